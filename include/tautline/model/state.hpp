@@ -1,0 +1,23 @@
+#pragma once
+/// @file
+/// Where the structure is: displacements and rotations from the reference configuration. Copy to commit, assign to
+/// roll back.
+
+#include <vector>
+
+#include <tautline/model/model.hpp>
+
+namespace tautline::model {
+
+struct State {
+  Points displacement;         ///< one for each node [m]
+  std::vector<Mat3> rotation;  ///< one for each node; identity where the node has no rotations
+
+  /// The reference configuration of `model`.
+  static State reference(const Model& model);
+};
+
+/// Current positions, reference + displacement [m].
+Points positions(const Model& model, const State& state);
+
+}  // namespace tautline::model
