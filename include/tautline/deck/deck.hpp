@@ -1,0 +1,57 @@
+#pragma once
+/// @file
+/// The deck: the file a user writes, read strictly into option structs. docs/deck/ is generated from the same table.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tautline/analysis/newton_options.hpp>
+#include <tautline/model/model_options.hpp>
+#include <tautline/output/output_options.hpp>
+#include <tautline/reflector/perimeter_truss_options.hpp>
+#include <tautline/steps/step_options.hpp>
+
+namespace tautline::deck {
+
+struct Deck {
+  std::string path;
+  std::string sha256;  ///< of the file's bytes, lower-case hex
+  std::string title;
+  std::map<std::string, std::string> parameters;  ///< values in force, after --set
+  std::optional<reflector::PerimeterTrussOptions> reflector;  ///< exactly one of reflector and model is present
+  std::optional<model::ModelOptions> model;
+  std::map<std::string, model::MaterialOptions> materials;
+  std::map<std::string, model::SectionOptions> sections;
+  std::map<std::string, model::GroupOptions> groups;
+  std::vector<model::SupportOptions> supports;
+  std::vector<model::LoadOptions> loads;
+  std::vector<steps::Step> steps;
+  output::OutputOptions output;
+  analysis::NewtonOptions solver;
+};
+
+/// @brief Reads and checks a deck: syntax, keys, types, units, ranges, cross references between its blocks.
+/// @param overrides  "path.to.key=value" as given by --set; `parameters.s=8` or any scalar key (`reflector.gap=0.05`, `steps.1.subdivisions=8`)
+/// @throws DeckError with every complaint at once (at most 20 are shown)
+Deck read_deck(const std::string& path, const std::vector<std::string>& overrides = {});
+
+/// The same from text; `name` stands for the file in messages.
+Deck parse_deck(const std::string& text, const std::string& name, const std::vector<std::string>& overrides = {});
+
+/// What a key means: type, unit, default, range, sentence. Empty key: the whole table of contents.
+/// @throws DeckError with a suggestion for an unknown key
+std::string explain(const std::string& key);
+
+/// JSON schema of the deck, draft 2020-12.
+std::string schema();
+
+/// A commented starting deck; `kinds()` lists the names. @throws DeckError for an unknown kind.
+std::string starting_deck(const std::string& kind);
+std::vector<std::string> starting_deck_kinds();
+
+/// docs/deck/*.md from the keyword table: file name -> text.
+std::map<std::string, std::string> reference_pages();
+
+}  // namespace tautline::deck

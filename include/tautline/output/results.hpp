@@ -1,0 +1,19 @@
+#pragma once
+/// @file
+/// results.json: written after every step, so that an interrupted run leaves a valid file.
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace tautline::output {
+
+/// Writes `results` to `path` by way of a temporary file and a rename, so that a reader never sees half a file.
+/// Numbers with 17 significant digits; NaN and infinity become null. @throws LibraryError with the reason
+void write_results(const std::string& path, const nlohmann::ordered_json& results);
+nlohmann::ordered_json read_results(const std::string& path);
+
+/// Creates `directory` with its parents and proves that it can be written to. @throws LibraryError naming it and why
+void prepare_directory(const std::string& directory);
+
+}  // namespace tautline::output

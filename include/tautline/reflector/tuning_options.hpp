@@ -1,0 +1,28 @@
+#pragma once
+#include <limits>
+#include <string>
+
+namespace tautline::reflector {
+
+enum class TuningMethod {
+  rule,        ///< Belov eq. 3.11: each tie shortened by the deviation of its front node
+  sensitivity  ///< least squares with the influence matrix of the converged tangent
+};
+
+enum class TuningObjective {
+  nodes,  ///< eq. 3.13, unweighted over cloth nodes inside the radius
+  area    ///< area-weighted, eq. 3.1
+};
+
+struct TuningOptions {
+  TuningMethod method = TuningMethod::rule;
+  TuningObjective objective = TuningObjective::area;  ///< sensitivity only
+  std::string ties = "ties";    ///< cable group to be tuned
+  int max_passes = 12;
+  double tolerance = 0.002;     ///< stop when the RMS changes by less than this part of itself [-]
+  double tension_min = 0.0;     ///< sensitivity: lower bound on tie tension [N]
+  double tension_max = std::numeric_limits<double>::infinity();  ///< sensitivity: upper bound [N]
+  double max_change = std::numeric_limits<double>::infinity();   ///< largest change of an unstressed length in one pass [m]
+};
+
+}  // namespace tautline::reflector

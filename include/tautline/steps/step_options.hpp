@@ -1,0 +1,65 @@
+#pragma once
+/// @file
+/// What each deck step can be told. One struct for a step kind; a deck's `steps` is a list of these.
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <tautline/analysis/newton_options.hpp>
+#include <tautline/core/error.hpp>
+#include <tautline/formfinding/force_density_options.hpp>
+#include <tautline/model/subdivide.hpp>
+#include <tautline/reflector/tuning_options.hpp>
+
+namespace tautline::steps {
+
+/// `kind: form_finding`. On a reflector: `net` is bound to the paraboloid, mirrored to `mirror`, `ties` get the vertical
+/// residual. On a plain model: `net` in space, fixed where supports and other elements' nodes are.
+struct FormFindingOptions {
+  std::vector<std::string> net;    ///< cable groups; empty: front_net of a reflector, all cable groups otherwise
+  std::vector<std::string> fixed;  ///< groups or selections whose nodes are fixed besides the supports (plain models)
+  enum class Method { tension, linear } method = Method::tension;  ///< prescribed tensions, or given force densities
+  formfinding::ForceDensityOptions solver;
+};
+
+/// `kind: mesh`
+struct MeshOptions {
+  model::SubdivideOptions subdivide;
+};
+
+/// One stage of an equilibrium: the supports plus `hold` are kept.
+struct StageOptions {
+  std::string name;
+  std::vector<std::string> hold;  ///< groups or selections held besides the deck's supports
+  SourceLocation where;
+};
+
+/// `kind: equilibrium`
+struct EquilibriumOptions {
+  std::vector<StageOptions> stages;  ///< empty: one stage with the supports only
+  std::vector<std::string> loads;    ///< names of loads ramped up in the last stage; empty: all of the deck
+  bool reset = false;                ///< start again from the reference configuration (as form-found)
+};
+
+/// `kind: tuning`
+struct TuningStepOptions {
+  reflector::TuningOptions tuning;
+};
+
+/// `kind: modal`
+struct ModalOptions {
+  int modes = 6;
+};
+
+using AnyStep = std::variant<FormFindingOptions, MeshOptions, EquilibriumOptions, TuningStepOptions, ModalOptions>;
+
+struct Step {
+  std::string kind;  ///< as written in the deck
+  std::string name;  ///< given, or kind with a number where a kind repeats; unique
+  SourceLocation where;
+  AnyStep options;
+};
+
+}  // namespace tautline::steps
