@@ -2,8 +2,10 @@
 /// @file
 /// Short names for the vectors and matrices used everywhere. SI units; columns of a coordinate matrix are nodes.
 
-#include <Eigen/Core>
 #include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace tautline {
 

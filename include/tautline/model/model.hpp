@@ -61,11 +61,12 @@ struct Selection {
 /// Degrees of freedom 0..2 are displacements along x, y, z [m], 3..5 rotations about them [rad].
 struct Support {
   std::string name;
+  std::vector<std::string> on;  ///< groups and selections; `nodes` are theirs
   std::vector<int> nodes;
   std::array<bool, 6> fixed{true, true, true, true, true, true};
 };
 
-/// A dead nodal load at full load factor.
+/// A dead nodal load at full load factor. It stays on the nodes of the structure as described, whatever the mesh.
 struct NodalLoad {
   std::string name;
   std::vector<int> nodes;

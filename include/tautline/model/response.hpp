@@ -31,7 +31,7 @@ struct Response {
 /// Evaluates every element (serial; a few milliseconds for 10^5 elements).
 Response evaluate_response(const Model& model, const State& state);
 
-/// Figures of one group. Cable entries count parent cables once for each segment.
+/// Figures of one group. A cable split in segments counts once for each segment.
 struct GroupSummary {
   ElementKind kind = ElementKind::cable;
   int count = 0, slack = 0;

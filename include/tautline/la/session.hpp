@@ -1,0 +1,38 @@
+#pragma once
+/// @file
+/// Start and end of MPI, PETSc and SLEPc, and the few collective operations the program needs.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace tautline::la {
+
+/// Lives as long as anything of la is used; made once, in main.
+class Session {
+ public:
+  Session();
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+};
+
+int rank();
+int size();
+
+double sum_over_ranks(double value);
+double max_over_ranks(double value);
+/// Whether it is true anywhere: how ranks agree before they throw. Collective.
+bool true_on_any_rank(bool value);
+/// Adds `values` (equal length everywhere) over all ranks; the result is everywhere.
+void sum_over_ranks(std::vector<double>& values);
+
+struct LibraryVersions {
+  std::string petsc, slepc, mumps;
+};
+LibraryVersions library_versions();
+
+/// Largest memory this process has held, summed over ranks [bytes]. Collective.
+std::size_t peak_memory_bytes();
+
+}  // namespace tautline::la

@@ -1,0 +1,44 @@
+#pragma once
+/// @file
+/// Distributed symmetric matrix of 3 x 3 blocks, upper triangle stored: RAII over PETSc SBAIJ.
+
+#include <span>
+#include <vector>
+
+#include <tautline/la/vector.hpp>
+
+struct _p_Mat;
+
+namespace tautline::la {
+
+/// Number of blocks in each owned block row of the upper triangle: in the rank's own columns, and in later ranks' columns.
+struct BlockPattern {
+  std::vector<int> diagonal, off_diagonal;
+};
+
+class SymmetricMatrix {
+ public:
+  SymmetricMatrix(const BlockLayout& layout, const BlockPattern& pattern);
+  ~SymmetricMatrix();
+  SymmetricMatrix(SymmetricMatrix&& other) noexcept;
+  SymmetricMatrix& operator=(SymmetricMatrix&& other) noexcept;
+  SymmetricMatrix(const SymmetricMatrix&) = delete;
+  SymmetricMatrix& operator=(const SymmetricMatrix&) = delete;
+
+  _p_Mat* handle() const noexcept { return mat_; }
+  void set_zero();
+  /// Adds a dense symmetric element matrix; `values` is 3n x 3n for n = blocks.size(). Any rank may add anywhere.
+  void add(std::span<const int> blocks, const double* values);
+  void finish();  ///< collective; after the last add
+  /// y = A x
+  void multiply(const Vector& x, Vector& y) const;
+  /// A copy with `value` added to the diagonal.
+  SymmetricMatrix shifted(double value) const;
+  double norm_of_diagonal() const;
+
+ private:
+  SymmetricMatrix() = default;
+  _p_Mat* mat_ = nullptr;
+};
+
+}  // namespace tautline::la

@@ -1,0 +1,82 @@
+#include <tautline/la/session.hpp>
+
+#include <cstdlib>
+
+#include <dmumps_c.h>
+#include <fmt/format.h>
+#include <slepcsys.h>
+#include <sys/resource.h>
+
+#include <tautline/core/error.hpp>
+
+#include "la/check.hpp"
+
+namespace tautline::la {
+
+void check(PetscErrorCode code, const char* what) {
+  if (code == 0) return;
+  const char* text = nullptr;
+  char* specific = nullptr;
+  PetscErrorMessage(code, &text, &specific);
+  throw LibraryError(fmt::format("PETSc failed in {} with code {}: {} {}", what, static_cast<int>(code),
+                                 text != nullptr ? text : "", specific != nullptr ? specific : ""));
+}
+
+namespace {
+
+/// Keeps PETSc from printing its own traceback: errors reach the user through LibraryError.
+PetscErrorCode quiet(MPI_Comm, int, const char*, const char*, PetscErrorCode code, PetscErrorType, const char*, void*) {
+  return code;
+}
+
+}  // namespace
+
+Session::Session() {
+  setenv("OPENBLAS_NUM_THREADS", "1", 0);
+  PetscOptionsSetValue(nullptr, "-no_signal_handler", nullptr);
+  check(SlepcInitialize(nullptr, nullptr, nullptr, nullptr), "SlepcInitialize");
+  check(PetscPushErrorHandler(quiet, nullptr), "PetscPushErrorHandler");
+}
+
+Session::~Session() { SlepcFinalize(); }
+
+int rank() {
+  int value = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &value);
+  return value;
+}
+
+int size() {
+  int value = 1;
+  MPI_Comm_size(PETSC_COMM_WORLD, &value);
+  return value;
+}
+
+double sum_over_ranks(double value) {
+  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  return value;
+}
+
+double max_over_ranks(double value) {
+  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
+  return value;
+}
+
+bool true_on_any_rank(bool value) { return max_over_ranks(value ? 1.0 : 0.0) > 0; }
+
+void sum_over_ranks(std::vector<double>& values) {
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+}
+
+LibraryVersions library_versions() {
+  return {fmt::format("{}.{}.{}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR),
+          fmt::format("{}.{}.{}", SLEPC_VERSION_MAJOR, SLEPC_VERSION_MINOR, SLEPC_VERSION_SUBMINOR), MUMPS_VERSION};
+}
+
+std::size_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(sum_over_ranks(static_cast<double>(usage.ru_maxrss) * 1024.0));
+}
+
+}  // namespace tautline::la

@@ -1,0 +1,66 @@
+#include <tautline/la/symmetric_matrix.hpp>
+
+#include <utility>
+
+#include <petscmat.h>
+
+#include "la/check.hpp"
+
+namespace tautline::la {
+
+SymmetricMatrix::SymmetricMatrix(const BlockLayout& layout, const BlockPattern& pattern) {
+  check(MatCreate(PETSC_COMM_WORLD, &mat_), "MatCreate");
+  check(MatSetSizes(mat_, 3 * layout.local, 3 * layout.local, 3 * layout.total, 3 * layout.total), "MatSetSizes");
+  check(MatSetBlockSize(mat_, 3), "MatSetBlockSize");
+  check(MatSetType(mat_, MATSBAIJ), "MatSetType");
+  check(MatSeqSBAIJSetPreallocation(mat_, 3, 0, pattern.diagonal.data()), "MatSeqSBAIJSetPreallocation");
+  check(MatMPISBAIJSetPreallocation(mat_, 3, 0, pattern.diagonal.data(), 0, pattern.off_diagonal.data()),
+        "MatMPISBAIJSetPreallocation");
+  check(MatSetOption(mat_, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE), "MatSetOption");
+  check(MatSetOption(mat_, MAT_SYMMETRIC, PETSC_TRUE), "MatSetOption");
+  check(MatSetOption(mat_, MAT_SYMMETRY_ETERNAL, PETSC_TRUE), "MatSetOption");
+}
+
+SymmetricMatrix::~SymmetricMatrix() {
+  if (mat_ != nullptr) MatDestroy(&mat_);
+}
+
+SymmetricMatrix::SymmetricMatrix(SymmetricMatrix&& other) noexcept : mat_(std::exchange(other.mat_, nullptr)) {}
+
+SymmetricMatrix& SymmetricMatrix::operator=(SymmetricMatrix&& other) noexcept {
+  std::swap(mat_, other.mat_);
+  return *this;
+}
+
+void SymmetricMatrix::set_zero() { check(MatZeroEntries(mat_), "MatZeroEntries"); }
+
+void SymmetricMatrix::add(std::span<const int> blocks, const double* values) {
+  const int n = static_cast<int>(blocks.size());
+  check(MatSetValuesBlocked(mat_, n, blocks.data(), n, blocks.data(), values, ADD_VALUES), "MatSetValuesBlocked");
+}
+
+void SymmetricMatrix::finish() {
+  check(MatAssemblyBegin(mat_, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin");
+  check(MatAssemblyEnd(mat_, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd");
+}
+
+void SymmetricMatrix::multiply(const Vector& x, Vector& y) const { check(MatMult(mat_, x.handle(), y.handle()), "MatMult"); }
+
+SymmetricMatrix SymmetricMatrix::shifted(double value) const {
+  SymmetricMatrix result;
+  check(MatDuplicate(mat_, MAT_COPY_VALUES, &result.mat_), "MatDuplicate");
+  check(MatShift(result.mat_, value), "MatShift");
+  return result;
+}
+
+double SymmetricMatrix::norm_of_diagonal() const {
+  ::Vec diagonal = nullptr;
+  check(MatCreateVecs(mat_, &diagonal, nullptr), "MatCreateVecs");
+  check(MatGetDiagonal(mat_, diagonal), "MatGetDiagonal");
+  PetscReal value = 0;
+  check(VecNorm(diagonal, NORM_INFINITY, &value), "VecNorm");
+  check(VecDestroy(&diagonal), "VecDestroy");
+  return value;
+}
+
+}  // namespace tautline::la

@@ -1,0 +1,15 @@
+#include <tautline/model/state.hpp>
+
+namespace tautline::model {
+
+State State::reference(const Model& model) {
+  return {Points(model.nodes.size(), Vec3::Zero()), std::vector<Mat3>(model.nodes.size(), Mat3::Identity())};
+}
+
+Points positions(const Model& model, const State& state) {
+  Points result(model.nodes.size());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = model.nodes[i] + state.displacement[i];
+  return result;
+}
+
+}  // namespace tautline::model

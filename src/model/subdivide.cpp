@@ -1,0 +1,237 @@
+#include <tautline/model/subdivide.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tautline/core/error.hpp>
+
+namespace tautline::model {
+
+namespace {
+
+using Edge = std::pair<int, int>;
+
+Edge edge_of(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+
+/// Resultants N0 given in the frame of one triangle, seen from the frame of another in the same plane.
+Vec3 turned(const Vec3& resultants, const Mat3& from, const Mat3& to) {
+  Eigen::Matrix2d tensor;
+  tensor << resultants[0], resultants[2], resultants[2], resultants[1];
+  const Eigen::Matrix2d rotation = to.leftCols<2>().transpose() * from.leftCols<2>();
+  const Eigen::Matrix2d result = rotation * tensor * rotation.transpose();
+  return {result(0, 0), result(1, 1), result(0, 1)};
+}
+
+class Subdivider {
+ public:
+  Subdivider(const Model& structure, const SubdivideOptions& options) : old_(structure), options_(options) {
+    check();
+    new_ = structure;
+    new_.cables.clear();
+    new_.beams.clear();
+    new_.membranes.clear();
+  }
+
+  Model run() {
+    find_facet_sides();
+    split_lines(old_.cables, new_.cables, cable_children_);
+    split_lines(old_.beams, new_.beams, beam_children_);
+    for (std::size_t i = 0; i < old_.membranes.size(); ++i) split_facet(static_cast<int>(i));
+    follow();
+    return std::move(new_);
+  }
+
+ private:
+  void check() const {
+    if (options_.subdivisions < 1)
+      throw ModelError(fmt::format("subdivisions must be 1 or more, is {}", options_.subdivisions));
+    if (options_.pattern == FacetPattern::mapped && options_.subdivisions % 2 != 0 && !old_.membranes.empty())
+      throw ModelError(fmt::format("the mapped pattern needs an even number of subdivisions, not {}", options_.subdivisions));
+    for (const auto& [name, parts] : options_.group_subdivisions) {
+      const int group = old_.find_group(name);
+      if (group < 0) throw ModelError(fmt::format("group_subdivisions: no group is called \"{}\"", name));
+      if (old_.groups[group].kind == ElementKind::membrane)
+        throw ModelError(fmt::format("group_subdivisions: \"{}\" are membranes; use subdivisions", name));
+      if (parts < 1) throw ModelError(fmt::format("group_subdivisions: \"{}\" needs 1 or more parts, not {}", name, parts));
+    }
+  }
+
+  void find_facet_sides() {
+    for (const auto& facet : old_.membranes)
+      for (int k = 0; k < 3; ++k) sides_[edge_of(facet.nodes[k], facet.nodes[(k + 1) % 3])] = options_.subdivisions;
+  }
+
+  int parts_of(const Edge& edge, const Group& group) const {
+    const auto wanted = options_.group_subdivisions.find(group.name);
+    const auto side = sides_.find(edge);
+    if (side != sides_.end()) {
+      if (wanted != options_.group_subdivisions.end() && wanted->second != side->second)
+        throw ModelError(fmt::format("group \"{}\" lies on facet sides and must have their {} parts, not {}", group.name,
+                                     side->second, wanted->second));
+      return side->second;
+    }
+    if (wanted != options_.group_subdivisions.end()) return wanted->second;
+    return group.kind == ElementKind::beam ? options_.subdivisions : 1;
+  }
+
+  int add_node(const Vec3& position) {
+    new_.nodes.push_back(position);
+    return static_cast<int>(new_.nodes.size()) - 1;
+  }
+
+  /// Nodes along an edge from its first to its second end, both included; made once, shared by all on the edge.
+  std::vector<int> along(int from, int to, int parts) {
+    const Edge edge = edge_of(from, to);
+    auto& inner = inner_nodes_[{edge, parts}];
+    if (inner.empty())
+      for (int i = 1; i < parts; ++i) {
+        const double t = static_cast<double>(i) / parts;
+        inner.push_back(add_node((1 - t) * old_.nodes[edge.first] + t * old_.nodes[edge.second]));
+      }
+    std::vector<int> result{edge.first};
+    result.insert(result.end(), inner.begin(), inner.end());
+    result.push_back(edge.second);
+    if (from != edge.first) std::reverse(result.begin(), result.end());
+    return result;
+  }
+
+  template <class Line>
+  void split_lines(const std::vector<Line>& from, std::vector<Line>& to, std::vector<std::vector<int>>& children) {
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const auto& [a, b] = from[i].nodes;
+      const auto nodes = along(a, b, parts_of(edge_of(a, b), old_.groups[from[i].group]));
+      children.emplace_back();
+      for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
+        children.back().push_back(static_cast<int>(to.size()));
+        to.push_back(from[i]);
+        to.back().nodes = {nodes[k], nodes[k + 1]};
+        to.back().parent = static_cast<int>(i);
+      }
+    }
+  }
+
+  void add_triangle(int parent, const std::array<int, 3>& nodes) {
+    const auto frame = [](const Points& points, const std::array<int, 3>& n) {
+      Mat3 x;
+      x << points[n[0]], points[n[1]], points[n[2]];
+      return element::membrane_frame(x);
+    };
+    const Membrane& old = old_.membranes[parent];
+    Membrane part = old;
+    part.nodes = nodes;
+    part.parent = parent;
+    part.prestress = turned(old.prestress, frame(old_.nodes, old.nodes), frame(new_.nodes, nodes));
+    membrane_children_[parent].push_back(static_cast<int>(new_.membranes.size()));
+    new_.membranes.push_back(part);
+  }
+
+  void split_facet(int index) {
+    membrane_children_.emplace_back();
+    if (options_.pattern == FacetPattern::mapped && options_.subdivisions > 1)
+      split_mapped(index);
+    else
+      split_structured(index);
+  }
+
+  /// s x s similar triangles: node (i, j) = A + i/s (B - A) + j/s (C - A).
+  void split_structured(int index) {
+    const int s = options_.subdivisions;
+    const auto [a, b, c] = old_.membranes[index].nodes;
+    const auto ab = along(a, b, s), ac = along(a, c, s), bc = along(b, c, s);
+    std::vector<std::vector<int>> grid(s + 1);
+    for (int j = 0; j <= s; ++j)
+      for (int i = 0; i + j <= s; ++i) {
+        if (j == 0) grid[j].push_back(ab[i]);
+        else if (i == 0) grid[j].push_back(ac[j]);
+        else if (i + j == s) grid[j].push_back(bc[j]);
+        else grid[j].push_back(add_node(old_.nodes[a] + (old_.nodes[b] - old_.nodes[a]) * (double(i) / s) +
+                                        (old_.nodes[c] - old_.nodes[a]) * (double(j) / s)));
+      }
+    for (int j = 0; j < s; ++j)
+      for (int i = 0; i + j < s; ++i) {
+        add_triangle(index, {grid[j][i], grid[j][i + 1], grid[j + 1][i]});
+        if (i + j + 1 < s) add_triangle(index, {grid[j + 1][i + 1], grid[j + 1][i], grid[j][i + 1]});
+      }
+  }
+
+  /// Three quadrilateral patches (corner, mid-side, centroid, mid-side), each h x h cells mapped bilinearly.
+  void split_mapped(int index) {
+    const int h = options_.subdivisions / 2;
+    const auto& nodes = old_.membranes[index].nodes;
+    const Vec3 centre = (old_.nodes[nodes[0]] + old_.nodes[nodes[1]] + old_.nodes[nodes[2]]) / 3;
+    std::array<std::vector<int>, 3> side, spoke;  // spoke[k]: from the middle of side k to the centroid
+    const int centroid = add_node(centre);
+    for (int k = 0; k < 3; ++k) {
+      side[k] = along(nodes[k], nodes[(k + 1) % 3], 2 * h);
+      spoke[k].push_back(side[k][h]);
+      const Vec3 middle = new_.nodes[side[k][h]];
+      for (int i = 1; i < h; ++i) spoke[k].push_back(add_node(middle + (centre - middle) * (double(i) / h)));
+      spoke[k].push_back(centroid);
+    }
+    for (int k = 0; k < 3; ++k) split_patch(index, h, side[k], side[(k + 2) % 3], spoke[k], spoke[(k + 2) % 3]);
+  }
+
+  /// Patch at a corner: `out` runs along the side that leaves the corner, `in` along the side that arrives at it.
+  void split_patch(int index, int h, const std::vector<int>& out, const std::vector<int>& in,
+                   const std::vector<int>& out_spoke, const std::vector<int>& in_spoke) {
+    std::vector<std::vector<int>> grid(h + 1, std::vector<int>(h + 1));
+    const auto point = [&](int node) { return new_.nodes[node]; };
+    for (int j = 0; j <= h; ++j)
+      for (int i = 0; i <= h; ++i) {
+        if (j == 0) grid[j][i] = out[i];
+        else if (i == 0) grid[j][i] = in[2 * h - j];
+        else if (i == h) grid[j][i] = out_spoke[j];
+        else if (j == h) grid[j][i] = in_spoke[i];
+        else {
+          const double x = double(i) / h, y = double(j) / h;
+          grid[j][i] = add_node((1 - x) * (1 - y) * point(out[0]) + x * (1 - y) * point(out[h]) +
+                                (1 - x) * y * point(in[h]) + x * y * point(out_spoke[h]));
+        }
+      }
+    for (int j = 0; j < h; ++j)
+      for (int i = 0; i < h; ++i) split_cell(index, {grid[j][i], grid[j][i + 1], grid[j + 1][i + 1], grid[j + 1][i]});
+  }
+
+  /// Two triangles of a quadrilateral, divided along its shorter diagonal.
+  void split_cell(int index, const std::array<int, 4>& q) {
+    const double first = (new_.nodes[q[2]] - new_.nodes[q[0]]).norm();
+    const double second = (new_.nodes[q[3]] - new_.nodes[q[1]]).norm();
+    if (first <= second) {
+      add_triangle(index, {q[0], q[1], q[2]});
+      add_triangle(index, {q[0], q[2], q[3]});
+    } else {
+      add_triangle(index, {q[0], q[1], q[3]});
+      add_triangle(index, {q[1], q[2], q[3]});
+    }
+  }
+
+  /// Selections and supports follow their elements.
+  void follow() {
+    const auto children = [](std::vector<int>& indices, const std::vector<std::vector<int>>& of) {
+      std::vector<int> result;
+      for (const int i : indices) result.insert(result.end(), of[i].begin(), of[i].end());
+      indices = std::move(result);
+    };
+    for (auto& [name, selection] : new_.selections) {
+      children(selection.cables, cable_children_);
+      children(selection.beams, beam_children_);
+      children(selection.membranes, membrane_children_);
+    }
+    for (auto& support : new_.supports) support.nodes = new_.nodes_of(support.on);
+  }
+
+  const Model& old_;
+  const SubdivideOptions& options_;
+  Model new_;
+  std::map<Edge, int> sides_;
+  std::map<std::pair<Edge, int>, std::vector<int>> inner_nodes_;
+  std::vector<std::vector<int>> cable_children_, beam_children_, membrane_children_;
+};
+
+}  // namespace
+
+Model subdivide(const Model& structure, const SubdivideOptions& options) { return Subdivider(structure, options).run(); }
+
+}  // namespace tautline::model
