@@ -48,6 +48,12 @@ double search_step(const std::function<double(double)>& slope, double slope_0) {
   return t;
 }
 
+std::string why_singular(const la::DirectSolver& solver) {
+  if (!solver.failure().empty()) return solver.failure();
+  const int null = solver.inertia().null;
+  return fmt::format("{} null pivot{}, so that part of the load meets no resistance", null, null == 1 ? "" : "s");
+}
+
 /// The stopping rule and the record of one solve.
 class Judge {
  public:
@@ -117,7 +123,7 @@ NewtonSummary solve_newton(NonlinearProblem& problem, Workspace& workspace, cons
   if (outcome == la::SnesOutcome::converged) return summary;
   if (outcome == la::SnesOutcome::singular) {
     summary.status = NewtonStatus::singular;
-    summary.reason = "the tangent stiffness is singular: " + workspace.solver.failure();
+    summary.reason = "the tangent stiffness is singular: " + why_singular(workspace.solver);
   } else if (outcome == la::SnesOutcome::not_a_number) {
     summary.reason = "the residual is no longer a number: an element was turned inside out or a step was far too large";
   }

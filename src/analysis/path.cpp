@@ -10,6 +10,15 @@ namespace {
 
 constexpr int easy_iterations = 6;  // a step that took no more may be followed by a longer one
 
+/// The last iteration factored the tangent; where there was none it is done here.
+la::Inertia inertia_at_end(NonlinearProblem& problem, Workspace& workspace, const NewtonSummary& last) {
+  if (last.newton_iterations() == 0) {
+    problem.tangent(workspace.tangent);
+    if (!workspace.solver.factor(workspace.tangent)) return {};
+  }
+  return workspace.solver.inertia();
+}
+
 }  // namespace
 
 PathSummary follow_path(PathProblem& problem, Workspace& workspace, const NewtonOptions& options,
@@ -45,10 +54,11 @@ PathSummary follow_path(PathProblem& problem, Workspace& workspace, const Newton
     }
   } catch (...) {
     problem.roll_back();
+    problem.set_lambda(reached);
     throw;
   }
   summary.reached = true;
-  summary.inertia = workspace.solver.inertia();
+  summary.inertia = inertia_at_end(problem, workspace, summary.points.back().newton);
   summary.reason = fmt::format("lambda = 1 reached in {} step{}", summary.points.size(), summary.points.size() == 1 ? "" : "s");
   return summary;
 }

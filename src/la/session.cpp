@@ -64,6 +64,29 @@ double max_over_ranks(double value) {
 
 bool true_on_any_rank(bool value) { return max_over_ranks(value ? 1.0 : 0.0) > 0; }
 
+void on_root(const std::function<void()>& action) {
+  std::string failure;
+  if (rank() == 0) {
+    try {
+      action();
+    } catch (const std::exception& error) {
+      failure = error.what();
+      if (failure.empty()) failure = "unknown failure";
+    }
+  }
+  int length = static_cast<int>(failure.size());
+  MPI_Bcast(&length, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  if (length == 0) return;
+  failure.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(failure.data(), length, MPI_CHAR, 0, PETSC_COMM_WORLD);
+  throw LibraryError(failure);
+}
+
+void abort_all_ranks(int exit_code) {
+  MPI_Abort(PETSC_COMM_WORLD, exit_code);
+  std::_Exit(exit_code);
+}
+
 void sum_over_ranks(std::vector<double>& values) {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
 }

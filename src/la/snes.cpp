@@ -83,12 +83,29 @@ PetscErrorCode judge(::SNES snes, PetscInt iteration, PetscReal, PetscReal, Pets
   });
 }
 
+/// Whether null pivots leave a part of f that no y balances: K y = f has no solution.
+bool inconsistent(const Context& context, ::Vec y, ::Vec f) {
+  if (context.solver.inertia().null == 0) return false;
+  ::Vec rest = nullptr;
+  check(VecDuplicate(f, &rest), "VecDuplicate");
+  check(MatMult(context.tangent.handle(), y, rest), "MatMult");
+  check(VecAXPY(rest, -1, f), "VecAXPY");
+  const bool result = Vector(rest).norm() > 1e-6 * Vector(f).norm();
+  check(VecDestroy(&rest), "VecDestroy");
+  return result;
+}
+
 /// SNES steps are x - t y with K y = f, so the increment is dx = -y and -f(x + t dx) . dx = f . y.
 PetscErrorCode search_line(::SNESLineSearch search, void* data) {
   auto& context = *static_cast<Context*>(data);
   return context.guard([&] {
     ::Vec x = nullptr, f = nullptr, y = nullptr, w = nullptr, g = nullptr;
     check(SNESLineSearchGetVecs(search, &x, &f, &y, &w, &g), "SNESLineSearchGetVecs");
+    if (inconsistent(context, y, f)) {
+      context.singular = true;
+      check(SNESLineSearchSetReason(search, SNES_LINESEARCH_FAILED_REDUCT), "SNESLineSearchSetReason");
+      return;
+    }
     double evaluated = -1;
     const auto slope = [&](double t) {
       check(VecWAXPY(w, -t, y, x), "VecWAXPY");
@@ -123,7 +140,13 @@ PetscErrorCode after_solve(::KSP, ::Vec, ::Vec, void* data) {
 class Handle {
  public:
   Handle() { check(SNESCreate(PETSC_COMM_WORLD, &snes_), "SNESCreate"); }
-  ~Handle() { SNESDestroy(&snes_); }
+  /// SNES would reset the solver's KSP on its way out and so lose the factors, their analysis and options.
+  ~Handle() {
+    ::KSP other = nullptr;
+    if (KSPCreate(PETSC_COMM_WORLD, &other) == 0) SNESSetKSP(snes_, other);
+    KSPDestroy(&other);
+    SNESDestroy(&snes_);
+  }
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
   ::SNES get() const { return snes_; }

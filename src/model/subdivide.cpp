@@ -219,7 +219,13 @@ class Subdivider {
       children(selection.beams, beam_children_);
       children(selection.membranes, membrane_children_);
     }
-    for (auto& support : new_.supports) support.nodes = new_.nodes_of(support.on);
+    for (auto& support : new_.supports) {
+      auto& nodes = support.nodes;
+      const auto found = new_.nodes_of(support.on);
+      nodes.insert(nodes.end(), found.begin(), found.end());
+      std::sort(nodes.begin(), nodes.end());
+      nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    }
   }
 
   const Model& old_;

@@ -15,25 +15,28 @@ struct CableProperties {
   double initial_strain = 0;
 };
 
-/// Answer of the cable; everything from the one energy W = EA L0 <eps>^2 / 2, eps = l/L0 - 1, <.> the positive part.
+/// Answer of the cable; everything from the one energy W = EA L0 <eps>^2 / 2, eps = l/L0 - 1, <.> the
+/// positive part.
 struct CableResponse {
-  double energy = 0;    ///< [J]
-  Vec<6> force;         ///< dW/du, order (u1x,u1y,u1z,u2x,...) [N]
-  Mat<6> tangent;       ///< d force / du [N/m]; left untouched unless wanted
-  double tension = 0;   ///< EA <eps> [N], never negative
-  bool slack = false;   ///< eps <= 0
+  double energy = 0;   ///< [J]
+  Vec<6> force;        ///< dW/du, order (u1x,u1y,u1z,u2x,...) [N]
+  Mat<6> tangent;      ///< d force / du [N/m]; left untouched unless wanted
+  double tension = 0;  ///< EA <eps> [N], never negative
+  bool slack = false;  ///< eps <= 0
 };
 
 /// @brief Energy, internal force, tangent and tension of a cable.
 ///
-/// Engineering strain, bilinear law sigma = E eps for eps > 0, else 0 (Belov, eq. 3.10). The elongation is formed from
-/// displacement differences, so that the tension of a short stiff tie keeps its digits.
+/// Engineering strain, bilinear law sigma = E eps for eps > 0, else 0 (Belov, eq. 3.10). The elongation is
+/// formed from displacement differences, so that the tension of a short stiff tie keeps its digits.
 /// @param[in] x_ref  reference coordinates, shape (3, 2), column = node [m]; distinct points
 /// @param[in] u      displacements, shape (6) [m]
-CableResponse evaluate_cable(const CableProperties& properties, const Mat<3, 2>& x_ref, const Vec<6>& u, Want want);
+CableResponse evaluate_cable(const CableProperties& properties, const Mat<3, 2>& x_ref, const Vec<6>& u,
+                             Want want);
 
-/// d force / d L0 at fixed displacement, shape (6) [N/m]: the right-hand side of tie tuning. Zero when slack.
-Vec<6> cable_force_by_unstressed_length(const CableProperties& properties, const Mat<3, 2>& x_ref, const Vec<6>& u);
+/// d force / d L0 at fixed ends and EA, shape (6) [N/m]: the right-hand side of tie tuning. Zero when slack.
+Vec<6> cable_force_by_unstressed_length(const CableProperties& properties, const Mat<3, 2>& x_ref,
+                                        const Vec<6>& u);
 
 /// Consistent mass matrix [kg] of a cable with `mass_per_length` (per unit of reference length) [kg/m].
 Mat<6> cable_mass(double mass_per_length, const Mat<3, 2>& x_ref);

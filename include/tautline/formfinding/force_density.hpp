@@ -5,11 +5,10 @@
 
 #include <functional>
 #include <string>
-#include <vector>
-
 #include <tautline/core/types.hpp>
 #include <tautline/formfinding/force_density_options.hpp>
 #include <tautline/formfinding/net.hpp>
+#include <vector>
 
 namespace tautline::formfinding {
 
@@ -19,28 +18,38 @@ namespace tautline::formfinding {
 /// @throws ModelError if D is singular: names a free node that hangs on nothing.
 Points solve_linear(const Net& net, const VecX& force_density, const Surface* surface = nullptr);
 
-/// What the nonlinear solve found.
+/// @brief What the nonlinear solve found.
+///
+/// residual_z = -(sum of q (z_j - z_i) over the branches of node i + load_z): at a free node on a surface
+/// what the ties must exert, negative where they pull down, so that the tension of a tie below is
+/// -residual_z; without a surface zero but for rounding. At a fixed node it is the z component of the
+/// support's reaction.
 struct ForceDensityResult {
   bool converged = false;
-  std::string reason;                          ///< one sentence with both sides of the inequality
-  Points nodes;                                ///< all nodes [m]
-  VecX force_density;                          ///< [N/m]
-  VecX tension;                                ///< q L [N]
-  VecX residual_z;                             ///< force each node needs along z to be in equilibrium on the surface, one for each node [N]
+  std::string reason;  ///< one sentence with both sides of the inequality
+  Points nodes;        ///< all nodes [m]
+  VecX force_density;  ///< [N/m]
+  VecX tension;        ///< q L [N]
+  VecX residual_z;     ///< force along z that each node still needs, one for each node [N]
   int iterations = 0;
-  std::vector<double> constraint_residual;     ///< max |T - T_target| before the first and after each iteration [N]
-  std::vector<double> constraint_residual_norm;///< its Euclidean norm [N]
-  std::vector<Vec3> coordinate_norm;           ///< |x|, |y|, |z| over free nodes after each iteration [m]
-  std::vector<double> step_relaxation;         ///< alpha of eq. (2.25) in each iteration
-  double out_of_balance = 0;                   ///< largest nodal force at a free node along the directions in equilibrium [N]
-  double condition_number = 0;                 ///< estimate of cond(G^T G); 0 if not computed
+  /// max |T - T_target| before the first and after each iteration [N]
+  std::vector<double> constraint_residual;
+  std::vector<double> constraint_residual_norm;  ///< Euclidean norm of T - T_target, likewise [N]
+  std::vector<Vec3> coordinate_norm;             ///< |x|, |y|, |z| over free nodes after each iteration [m]
+  std::vector<double> step_relaxation;           ///< alpha of eq. (2.25) in each iteration
+  double out_of_balance = 0;  ///< largest nodal force at a free node along the directions in equilibrium [N]
+  double condition_number = 0;  ///< cond(G^T G) at the end; 0 if not computed
 };
 
-/// @brief Finds force densities with the tensions asked for (eqs 2.13-2.26, minimal-norm step 2.53, relaxation 2.25).
+/// @brief Finds force densities with the tensions asked for (eqs 2.13-2.26, minimal-norm step 2.53,
+/// relaxation 2.25).
 ///
-/// @param[in] target  prescribed tension for each branch [N]; NaN leaves the branch's force density free,
-///                    see ForceDensityOptions::free_branches
+/// Does not throw because of the iteration: `converged` and `reason` tell.
+/// @param[in] target  prescribed tension for each branch [N], positive; NaN leaves the branch's force density
+///                    to the step of smallest norm over all branches
 /// @param[in] progress  called after each iteration with (iteration, residual); may be empty
+/// @throws ModelError if a target is not positive, the net makes no sense, or a free node hangs on no fixed
+/// one
 ForceDensityResult find_tensions(const Net& net, const VecX& target, const Surface* surface,
                                  const ForceDensityOptions& options,
                                  const std::function<void(int, double)>& progress = {});

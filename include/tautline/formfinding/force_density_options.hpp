@@ -13,7 +13,7 @@ struct ForceDensityOptions {
   double initial_force_density = 10.0;  ///< q0 of every branch [N/m], positive
   double tolerance = 1e-10;             ///< max |T - T_target| relative to the largest target tension [-]
   int max_iterations = 50;
-  bool estimate_condition = false;      ///< condition number of G^T G by Lanczos or dense SVD
+  bool estimate_condition = false;  ///< condition number of G^T G, dense: up to 2000 prescribed tensions
 };
 
 }  // namespace tautline::formfinding

@@ -3,9 +3,8 @@
 /// A cable net as stage 1 sees it: branches between nodes, some of them fixed.
 
 #include <array>
-#include <vector>
-
 #include <tautline/core/types.hpp>
+#include <vector>
 
 namespace tautline::formfinding {
 

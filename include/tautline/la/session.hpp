@@ -3,6 +3,7 @@
 /// Start and end of MPI, PETSc and SLEPc, and the few collective operations the program needs.
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@ double sum_over_ranks(double value);
 double max_over_ranks(double value);
 /// Whether it is true anywhere: how ranks agree before they throw. Collective.
 bool true_on_any_rank(bool value);
+/// Does `action` on rank 0 only; if it throws there, every rank throws a LibraryError with the same text. Collective.
+void on_root(const std::function<void()>& action);
+/// Ends all ranks at once with an exit code: the last resort when one rank alone has failed.
+[[noreturn]] void abort_all_ranks(int exit_code);
 /// Adds `values` (equal length everywhere) over all ranks; the result is everywhere.
 void sum_over_ranks(std::vector<double>& values);
 

@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// Fields for ParaView: one unstructured grid of lines and triangles with named arrays, written in parallel pieces.
+/// Fields for ParaView: one unstructured grid of lines and triangles with named arrays, written in parallel
+/// pieces.
 
 #include <array>
 #include <string>
@@ -12,29 +13,32 @@ namespace tautline::output {
 
 /// A named array; `values` holds components() values for each point or cell, interleaved.
 struct Field {
-  std::string name;        ///< with unit, e.g. "tension [N]"
+  std::string name;  ///< with unit, e.g. "tension [N]"
   int components = 1;
   std::vector<double> values;
 };
 
 /// Geometry and arrays of one moment (a step, a stage, a mode).
 struct FieldGrid {
-  Points points;                               ///< reference coordinates [m]
-  std::vector<std::array<int, 2>> lines;       ///< cells first
-  std::vector<std::array<int, 3>> triangles;   ///< cells after the lines
+  Points points;                                 ///< reference coordinates [m]
+  std::vector<std::array<int, 2>> lines;         ///< cells first
+  std::vector<std::array<int, 3>> triangles;     ///< cells after the lines
   std::vector<Field> point_fields, cell_fields;  ///< cell arrays in the order lines, triangles
 };
 
 /// The part of `grid` whose cells have owner[cell] == rank; points are those the cells use.
 FieldGrid extract_piece(const FieldGrid& grid, const std::vector<int>& owner, int rank);
 
-/// @brief Writes the series DIR/fields.pvd with one .pvtu of one .vtu per rank (a single .vtu when size == 1) per moment.
+/// @brief Writes the series DIR/fields.pvd with one .pvtu of one .vtu per rank (a single .vtu when size == 1)
+/// per moment.
 class FieldSeries {
  public:
   /// @param directory exists already; files go to directory/fields/, the collection to directory/fields.pvd
   FieldSeries(std::string directory, int rank, int size);
-  /// Collective without communication: every rank writes its piece; rank 0 also the .pvtu and the updated .pvd.
-  /// @param name unique, used in file names, e.g. "03_tuning"
+  /// Collective without communication: every rank writes its piece; rank 0 also the .pvtu and the updated
+  /// .pvd. All ranks must give the same arrays in the same order.
+  /// @param name unique, used in file names (other characters than letters, digits, - and . become _), e.g.
+  /// "03_tuning"
   /// @throws LibraryError naming the file that could not be written
   void write(const std::string& name, const FieldGrid& piece);
 

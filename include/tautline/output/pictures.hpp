@@ -1,8 +1,9 @@
 #pragma once
 /// @file
-/// PNG pictures without a display: three-dimensional views and charts. Drawn by a plugin that holds VTK's renderer and is
-/// loaded on first use.
+/// PNG pictures without a display: three-dimensional views and charts. Drawn by a plugin that holds VTK's
+/// renderer and is loaded on first use.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,26 +14,26 @@ namespace tautline::output {
 
 /// A coloured layer of a view: lines or triangles of a grid, coloured by a scalar or one plain colour.
 struct ViewLayer {
-  Points points;                              ///< positions to draw [m]
+  Points points;  ///< positions to draw [m]
   std::vector<std::array<int, 2>> lines;
   std::vector<std::array<int, 3>> triangles;
-  std::vector<double> cell_scalars;           ///< one for each cell (lines, then triangles); empty if not used
-  std::vector<double> point_scalars;          ///< one for each point; empty if not used
-  Vec3 colour{0.35, 0.35, 0.38};              ///< where no scalars are given
-  double line_width = 1.5;                    ///< pixels
+  std::vector<double> cell_scalars;   ///< for each cell (lines, then triangles), NaN is grey; or empty
+  std::vector<double> point_scalars;  ///< for each point, NaN is grey; or empty
+  Vec3 colour{0.35, 0.35, 0.38};      ///< where no scalars are given
+  double line_width = 1.5;            ///< pixels
   double opacity = 1.0;
 };
 
 struct View {
   std::string title;
-  std::string subtitle;              ///< a line of figures below the title
+  std::string subtitle;  ///< a line of figures below the title
   std::vector<ViewLayer> layers;
-  std::string scalar_title;          ///< of the colour bar, with unit, e.g. "deviation [mm]"; empty: no bar
+  std::string scalar_title;  ///< of the colour bar, with unit, e.g. "deviation [mm]"; empty: no bar
   std::optional<std::array<double, 2>> range;  ///< of the colours; default: of all scalars
-  bool diverging = false;            ///< blue-white-red about zero (symmetric range) instead of a sequential map
-  Vec3 direction{-0.55, -1.0, 0.45}; ///< from the centre towards the camera
+  bool diverging = false;  ///< blue-white-red about zero (symmetric range) instead of a sequential map
+  Vec3 direction{-0.55, -1.0, 0.45};  ///< from the centre towards the camera
   Vec3 up{0, 0, 1};
-  int width = 1400, height = 1000;   ///< pixels
+  int width = 1400, height = 1000;  ///< pixels; a wide, flat structure gives a picture that is less high
 };
 
 struct Curve {

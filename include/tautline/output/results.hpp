@@ -8,12 +8,14 @@
 
 namespace tautline::output {
 
-/// Writes `results` to `path` by way of a temporary file and a rename, so that a reader never sees half a file.
-/// Numbers with 17 significant digits; NaN and infinity become null. @throws LibraryError with the reason
+/// Writes `results` to `path` by way of a temporary file and a rename, so that a reader never sees half a
+/// file. Numbers have the digits (up to 17) that bring them back bit for bit; NaN and infinity become null.
+/// @throws LibraryError with the reason
 void write_results(const std::string& path, const nlohmann::ordered_json& results);
 nlohmann::ordered_json read_results(const std::string& path);
 
-/// Creates `directory` with its parents and proves that it can be written to. @throws LibraryError naming it and why
+/// Creates `directory` with its parents and proves that it can be written to. @throws LibraryError naming it
+/// and why
 void prepare_directory(const std::string& directory);
 
 }  // namespace tautline::output

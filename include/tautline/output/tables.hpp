@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// CSV tables: nodes, cables, beams, the cut list and the nodes as stage 1 found them. 17 digits for lengths and coordinates.
+/// CSV tables: nodes, cables, beams, the cut list and the nodes as stage 1 found them. 17 digits for lengths
+/// and coordinates. All ids and node numbers count from 1. Names with commas or quotes are quoted.
 
 #include <string>
 #include <vector>
@@ -11,16 +12,19 @@
 
 namespace tautline::output {
 
-/// form_finding_nodes.csv: id,group,x,y,z. `id` counts from 1; `group` is the first selection or group of the node.
+/// form_finding_nodes.csv: id,group,x,y,z. `id` counts from 1; `group` is the first selection or group of the
+/// node.
 void write_form_finding_nodes(const std::string& path, const model::Model& structure);
 /// nodes.csv: id,group,x_ref,y_ref,z_ref,x,y,z,ux,uy,uz
 void write_nodes(const std::string& path, const model::Model& model, const model::State& state);
 /// cables.csv: id,group,node_1,node_2,length,unstressed_length,tension,slack
 void write_cables(const std::string& path, const model::Model& model, const model::Response& response);
-/// beams.csv: id,group,node_1,node_2,axial,shear_2,shear_3,torque,moment_2_start,moment_3_start,moment_2_end,moment_3_end
+/// beams.csv:
+/// id,group,node_1,node_2,axial,shear_2,shear_3,torque,moment_2_start,moment_3_start,moment_2_end,moment_3_end
 void write_beams(const std::string& path, const model::Model& model, const model::Response& response);
 /// cut_list.csv: what a workshop cuts: one row for each cable before subdivision (segments joined):
-/// id,group,unstressed_length,marking_tension
+/// id,group,unstressed_length,marking_tension. `id` is that of the cable before subdivision; the tension is
+/// the mean over its segments, by length.
 void write_cut_list(const std::string& path, const model::Model& model, const model::Response& response);
 
 }  // namespace tautline::output

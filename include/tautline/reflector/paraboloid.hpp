@@ -7,13 +7,14 @@
 
 namespace tautline::reflector {
 
-/// Offset (or, with clearance = -aperture/2, axisymmetric) paraboloid in the aperture frame: z normal to the aperture
-/// plane of the cut-out, x in the plane of symmetry.
+/// Offset (or, with clearance = -aperture/2, axisymmetric) paraboloid in the aperture frame: z normal to the
+/// aperture plane of the cut-out, x in the plane of symmetry.
 class Paraboloid : public formfinding::Surface {
  public:
   /// @param aperture D, diameter of the cutting cylinder [m]
   /// @param focal_length F [m]
-  /// @param clearance X_A, distance from the parent axis to the near edge [m]; -aperture/2 gives the axisymmetric dish
+  /// @param clearance X_A, distance from the parent axis to the near edge [m]; -aperture/2 gives the
+  /// axisymmetric dish
   /// @throws ModelError unless aperture, focal_length > 0 and clearance >= -aperture/2
   Paraboloid(double aperture, double focal_length, double clearance);
 

@@ -1,0 +1,155 @@
+/// @file
+/// The command line. CLI11 is slow to compile and stays in this file.
+
+#include <filesystem>
+#include <functional>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <tautline/core/error.hpp>
+#include <tautline/core/interrupt.hpp>
+#include <tautline/deck/deck.hpp>
+#include <tautline/la/session.hpp>
+#include <tautline/output/report.hpp>
+#include <tautline/steps/run.hpp>
+#include <tautline/steps/version.hpp>
+
+namespace {
+
+using namespace tautline;
+
+/// What the command line asked for.
+struct Request {
+  std::string deck, directory, key, kind, checkpoint;
+  std::vector<std::string> overrides, directories;
+  std::vector<int> subdivisions{2, 4, 6, 8};
+  bool quiet = false, no_pictures = false;
+};
+
+std::string directory_of(const Request& request, const std::string& suffix = "") {
+  if (!request.directory.empty()) return request.directory;
+  return "results/" + std::filesystem::path(request.deck).stem().string() + suffix;
+}
+
+Progress::Mode progress_mode(const Request& request) {
+  return request.quiet || la::rank() != 0 ? Progress::Mode::silent : Progress::detect();
+}
+
+int run(const Request& request) {
+  const la::Session session;
+  watch_for_interrupt();
+  Progress progress(progress_mode(request));
+  const auto deck = deck::read_deck(request.deck, request.overrides);
+  return static_cast<int>(steps::run(deck, {directory_of(request), !request.no_pictures}, progress));
+}
+
+int study(const Request& request) {
+  const la::Session session;
+  watch_for_interrupt();
+  Progress progress(progress_mode(request));
+  return static_cast<int>(steps::study(request.deck, request.overrides, request.subdivisions,
+                                       {directory_of(request, "_study"), !request.no_pictures}, progress));
+}
+
+int check(const Request& request) {
+  std::cout << steps::check(deck::read_deck(request.deck, request.overrides));
+  return 0;
+}
+
+/// Exit code and message of whatever came out. Deck errors are the same on every rank: rank 0 tells them.
+int report_failure(const std::string& message, ExitCode code) {
+  if (message.empty() || message.back() != '\n')
+    std::cerr << message << '\n';
+  else
+    std::cerr << message;
+  return static_cast<int>(code);
+}
+
+int guarded(const std::function<int()>& action) {
+  try {
+    return action();
+  } catch (const DeckError& error) {
+    return report_failure(error.what(), ExitCode::bad_deck);
+  } catch (const ModelError& error) {
+    return report_failure(fmt::format("error: {}", error.what()), ExitCode::impossible_model);
+  } catch (const LibraryError& error) {
+    return report_failure(fmt::format("error: {}", error.what()), ExitCode::library_failed);
+  } catch (const std::exception& error) {
+    return report_failure(fmt::format("internal error: {}\nThis is a bug, please report it with the deck.", error.what()), ExitCode::bug);
+  }
+}
+
+void add_deck_options(CLI::App& command, Request& request) {
+  command.add_option("deck", request.deck, "the deck, a YAML file")->required();
+  command.add_option("--set", request.overrides, "change a value of the deck: path.to.key=value")->allow_extra_args(false);
+}
+
+void add_run_options(CLI::App& command, Request& request) {
+  add_deck_options(command, request);
+  command.add_option("-o,--output", request.directory, "where results go (default: results/<deck name>)");
+  command.add_flag("--quiet", request.quiet, "no progress on stderr");
+  command.add_flag("--no-pictures", request.no_pictures, "draw no PNG pictures");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"tautline: form-finding and nonlinear analysis of cable-shell structures"};
+  app.set_version_flag("--version", std::string("tautline ") + tautline::steps::version());
+  app.require_subcommand(1);
+  Request request;
+  int result = 0;
+  const auto on = [&](CLI::App* command, int (*action)(const Request&)) {
+    command->callback([&result, &request, action] { result = guarded([&] { return action(request); }); });
+  };
+
+  auto* run_command = app.add_subcommand("run", "run a deck");
+  add_run_options(*run_command, request);
+  run_command->footer("Example: tautline run inputs/perimeter_truss_12m.yaml --set parameters.subdivisions=8");
+  on(run_command, run);
+
+  auto* check_command = app.add_subcommand("check", "tell every error of a deck, and what would make its solve fail; solves nothing");
+  add_deck_options(*check_command, request);
+  check_command->footer("Example: tautline check inputs/perimeter_truss_12m.yaml");
+  on(check_command, check);
+
+  auto* study_command = app.add_subcommand("study", "run a deck with several subdivisions and compare");
+  add_run_options(*study_command, request);
+  study_command->add_option("--subdivisions", request.subdivisions, "parts of each facet side")->delimiter(',');
+  study_command->footer("Example: tautline study inputs/perimeter_truss_12m.yaml --subdivisions 2,4,6,8");
+  on(study_command, study);
+
+  auto* new_command = app.add_subcommand("new", "print a commented starting deck");
+  new_command->add_option("kind", request.kind, "perimeter-truss, net, membrane or frame")->required();
+  new_command->footer("Example: tautline new net > net.yaml");
+  on(new_command, [](const Request& r) { std::cout << deck::starting_deck(r.kind); return 0; });
+
+  auto* explain_command = app.add_subcommand("explain", "tell what a deck key means");
+  explain_command->add_option("key", request.key, "the key, e.g. reflector.gap; none: all keys");
+  explain_command->footer("Example: tautline explain reflector.gap");
+  on(explain_command, [](const Request& r) { std::cout << deck::explain(r.key); return 0; });
+
+  auto* schema_command = app.add_subcommand("schema", "print the JSON schema of the deck, for an editor's completion");
+  schema_command->footer("Example: tautline schema > tautline.schema.json");
+  on(schema_command, [](const Request&) { std::cout << deck::schema(); return 0; });
+
+  auto* report_command = app.add_subcommand("report", "(re)build report.html; several directories: side by side");
+  report_command->add_option("directories", request.directories, "result directories")->required();
+  report_command->footer("Example: tautline report results/perimeter_truss_12m");
+  on(report_command, [](const Request& r) { std::cout << output::write_report(r.directories) << '\n'; return 0; });
+
+  auto* compare_command = app.add_subcommand("compare", "compare surface error, tensions, frequencies and time of runs");
+  compare_command->add_option("directories", request.directories, "result directories")->required()->expected(2, 1000);
+  compare_command->footer("Example: tautline compare results/a results/b");
+  on(compare_command, [](const Request& r) { std::cout << output::comparison_text(r.directories); return 0; });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : static_cast<int>(ExitCode::bad_deck);
+  }
+  return result;
+}

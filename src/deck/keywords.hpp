@@ -1,0 +1,23 @@
+#pragma once
+/// @file
+/// The parts of the keyword table, one function and one source file (keywords_<name>.cpp) each.
+
+#include <deck/keyword.hpp>
+
+namespace tautline::deck {
+
+const BlockSet& reflector_blocks();  ///< of reflector::PerimeterTrussOptions
+const BlockSet& model_blocks();      ///< of model::ModelOptions
+const BlockSet& material_blocks();   ///< of model::MaterialOptions
+const BlockSet& section_blocks();    ///< of model::SectionOptions
+const BlockSet& group_blocks();      ///< of model::GroupOptions
+const BlockSet& support_blocks();    ///< of model::SupportOptions
+const BlockSet& load_blocks();       ///< of model::LoadOptions
+const BlockSet& step_blocks();       ///< of steps::Step
+const BlockSet& output_blocks();     ///< of output::OutputOptions
+const BlockSet& solver_blocks();     ///< of analysis::NewtonOptions
+
+/// The keys of a group of which a cable has one.
+const std::vector<std::string>& initial_states();
+
+}  // namespace tautline::deck

@@ -1,0 +1,13 @@
+#pragma once
+/// @file
+/// SHA-256 (FIPS 180-4), for the fingerprint of a deck.
+
+#include <string>
+#include <string_view>
+
+namespace tautline::deck {
+
+/// Digest of the bytes in lower-case hex.
+std::string sha256(std::string_view bytes);
+
+}  // namespace tautline::deck

@@ -1,0 +1,106 @@
+#include <deck/source.hpp>
+
+#include <algorithm>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include <tautline/core/text.hpp>
+
+namespace tautline::deck {
+
+namespace {
+
+constexpr std::size_t most_shown = 20;
+
+/// Number of continuation bytes after a leading byte, or -1.
+int continuation_bytes(unsigned char lead) {
+  if (lead < 0x80U) return 0;
+  if (lead >= 0xC2U && lead < 0xE0U) return 1;
+  if (lead >= 0xE0U && lead < 0xF0U) return 2;
+  if (lead >= 0xF0U && lead < 0xF5U) return 3;
+  return -1;
+}
+
+bool is_control(unsigned char c) { return (c < 0x20U && c != '\n' && c != '\r' && c != '\t') || c == 0x7FU; }
+
+}  // namespace
+
+Source::Source(std::string name, const std::string& text) : name_(std::move(name)) {
+  std::string current;
+  for (const char c : text) {
+    if (c == '\n') {
+      lines_.push_back(std::move(current));
+      current.clear();
+    } else if (c != '\r') {
+      current += c;
+    }
+  }
+  if (!current.empty()) lines_.push_back(std::move(current));
+}
+
+const std::string& Source::line(int number) const {
+  static const std::string none;
+  return number >= 1 && number <= n_lines() ? lines_[static_cast<std::size_t>(number) - 1] : none;
+}
+
+Place Source::place(int line_from_0, int byte_column, std::size_t bytes) const {
+  const std::string& text = line(line_from_0 + 1);
+  const auto begin = std::min(static_cast<std::size_t>(std::max(0, byte_column)), text.size());
+  const auto end = std::min(begin + bytes, text.size());
+  const int before = characters(text, begin);
+  return {line_from_0 + 1, before + 1, std::max(1, characters(text, end) - before), {}};
+}
+
+SourceLocation Source::where(const Place& place) const {
+  if (!place.origin.empty()) return {place.origin, 0, 0};
+  return {name_, place.line, place.column};
+}
+
+Diagnostic Source::diagnostic(const Place& place, std::string message) const {
+  Diagnostic result;
+  result.where = where(place);
+  result.message = std::move(message);
+  if (place.origin.empty() && place.line > 0) {
+    result.source_line = line(place.line);
+    std::replace(result.source_line.begin(), result.source_line.end(), '\t', ' ');
+    const int width = characters(result.source_line, result.source_line.size());
+    result.length = std::max(1, std::min(place.length, width - place.column + 1));
+  }
+  return result;
+}
+
+void Complaints::add(Diagnostic diagnostic) {
+  if (seen_.insert(to_string(diagnostic)).second) list_.push_back(std::move(diagnostic));
+}
+
+void Complaints::throw_if_any() {
+  if (list_.empty()) return;
+  const auto earlier = [](const Diagnostic& a, const Diagnostic& b) {
+    return std::tie(a.where.line, a.where.column) < std::tie(b.where.line, b.where.column);
+  };
+  std::stable_sort(list_.begin(), list_.end(), earlier);
+  if (list_.size() > most_shown) {
+    Diagnostic rest;
+    rest.where.file = list_.back().where.file;
+    rest.message = fmt::format("{} errors in all; the first {} are shown", list_.size(), most_shown);
+    list_.resize(most_shown);
+    list_.push_back(std::move(rest));
+  }
+  throw DeckError(list_);
+}
+
+std::size_t first_bad_byte(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto lead = static_cast<unsigned char>(text[i]);
+    const int more = continuation_bytes(lead);
+    if (more < 0 || is_control(lead)) return i;
+    for (int k = 1; k <= more; ++k) {
+      if (i + k >= text.size() || (static_cast<unsigned char>(text[i + k]) & 0xC0U) != 0x80U) return i;
+    }
+    i += static_cast<std::size_t>(more);
+  }
+  return std::string_view::npos;
+}
+
+}  // namespace tautline::deck

@@ -1,0 +1,44 @@
+#include <deck/starting_decks.hpp>
+
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <deck/reader.hpp>
+#include <tautline/core/text.hpp>
+#include <tautline/deck/deck.hpp>
+
+namespace tautline::deck {
+
+namespace {
+
+const std::array<std::pair<const char*, const char*>, 4>& table() {
+  static const std::array<std::pair<const char*, const char*>, 4> decks{{{"perimeter-truss", starting_perimeter_truss},
+                                                                         {"net", starting_net},
+                                                                         {"membrane", starting_membrane},
+                                                                         {"frame", starting_frame}}};
+  return decks;
+}
+
+}  // namespace
+
+std::vector<std::string> starting_deck_kinds() {
+  std::vector<std::string> kinds;
+  for (const auto& [kind, text] : table()) kinds.emplace_back(kind);
+  return kinds;
+}
+
+std::string starting_deck(const std::string& kind) {
+  for (const auto& [name, text] : table())
+    if (name == kind) return text;
+  const bool planned = kind == "umbrella" || kind == "rod-umbrella";
+  Diagnostic diagnostic;
+  diagnostic.where.file = "new";
+  diagnostic.message = planned ? fmt::format("kind \"{}\" is not available in this version", kind) : fmt::format("unknown kind \"{}\"", kind);
+  diagnostic.expectation = fmt::format("expected one of: {}", join(starting_deck_kinds()));
+  diagnostic.suggestion = did_you_mean(kind, starting_deck_kinds());
+  throw DeckError({diagnostic});
+}
+
+}  // namespace tautline::deck

@@ -1,0 +1,77 @@
+#include <tautline/element/cable.hpp>
+#include <tautline/material/tension_only.hpp>
+
+#include "detail/chord.hpp"
+
+namespace tautline::element {
+
+namespace {
+
+/// A cable's chord with its strain and law.
+struct Stretched {
+  detail::Chord chord;
+  double unstressed_length;   ///< L0 [m]
+  double engineering_strain;  ///< l / L0 - 1
+  material::TensionOnlyResponse law;
+};
+
+Stretched stretch(const CableProperties& properties, const Mat<3, 2>& x_ref, const Vec<6>& u) {
+  const detail::Chord chord = detail::chord(x_ref, u.head<3>(), u.tail<3>());
+  const double eps0 = properties.initial_strain;
+  const double strain = eps0 + (1 + eps0) * chord.elongation / chord.length_ref;
+  return {chord, chord.length_ref / (1 + eps0), strain,
+          material::tension_only(properties.axial_stiffness, strain)};
+}
+
+/// Tangent of both ends from the block that links them.
+Mat<6> two_ended(const Mat3& block) {
+  Mat<6> matrix;
+  matrix << block, -block, -block, block;
+  return matrix;
+}
+
+}  // namespace
+
+CableResponse evaluate_cable(const CableProperties& properties, const Mat<3, 2>& x_ref, const Vec<6>& u,
+                             Want want) {
+  const Stretched cable = stretch(properties, x_ref, u);
+  const Vec3& n = cable.chord.direction;
+
+  CableResponse response;
+  response.energy = cable.law.energy_per_length * cable.unstressed_length;
+  response.tension = cable.law.tension;
+  response.slack = cable.law.slack;
+  if (cable.law.slack) {  // also where the ends coincide and there is no direction
+    response.force.setZero();
+    if (want == Want::tangent) response.tangent.setZero();
+    return response;
+  }
+  response.force << -cable.law.tension * n, cable.law.tension * n;
+  if (want == Want::tangent) {
+    const double material = cable.law.slope / cable.unstressed_length;
+    const double geometric = cable.law.tension / cable.chord.length;
+    response.tangent = two_ended((material - geometric) * n * n.transpose() + geometric * Mat3::Identity());
+  }
+  return response;
+}
+
+Vec<6> cable_force_by_unstressed_length(const CableProperties& properties, const Mat<3, 2>& x_ref,
+                                        const Vec<6>& u) {
+  const Stretched cable = stretch(properties, x_ref, u);
+  if (cable.law.slack) return Vec<6>::Zero();
+  const double strain_by_length = -(1 + cable.engineering_strain) / cable.unstressed_length;
+  const Vec3 pull = cable.law.slope * strain_by_length * cable.chord.direction;
+  Vec<6> derivative;
+  derivative << -pull, pull;
+  return derivative;
+}
+
+Mat<6> cable_mass(double mass_per_length, const Mat<3, 2>& x_ref) {
+  const double sixth = mass_per_length * (x_ref.col(1) - x_ref.col(0)).norm() / 6;
+  const Mat3 I = Mat3::Identity();
+  Mat<6> mass;
+  mass << 2 * sixth * I, sixth * I, sixth * I, 2 * sixth * I;
+  return mass;
+}
+
+}  // namespace tautline::element

@@ -1,0 +1,28 @@
+#pragma once
+/// @file
+/// The beam in its own frame: law of small local deformations, and mass. Theory:
+/// docs/theory/beam.md#local-law
+
+#include <tautline/element/beam.hpp>
+
+namespace tautline::element::detail {
+
+/// Answer to the local deformations (elongation, rotation vector of end 1, rotation vector of end 2).
+struct BeamLocalResponse {
+  double energy = 0;  ///< [J]
+  Vec<7> force;       ///< conjugate to the deformations [N, N m]
+  Mat<7> tangent;     ///< untouched unless wanted
+};
+
+/// @brief Linear bending and torsion, and the axial strain averaged along the shallow arch.
+///
+/// W = EA L eps^2/2 + bending of both planes + GJ (twist)^2/(2 L),
+/// eps = elongation/L + mean along the beam of (v'^2 + w'^2)/2.
+/// @param[in] length  in the reference configuration [m]
+BeamLocalResponse beam_local_law(const BeamSection& section, double length, const Vec<7>& deformation,
+                                 Want want);
+
+/// Consistent mass matrix in the axes of the beam, order (u1, spin1, u2, spin2).
+Mat<12> beam_local_mass(const BeamSection& section, double length);
+
+}  // namespace tautline::element::detail

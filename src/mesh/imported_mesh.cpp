@@ -1,0 +1,38 @@
+#include <tautline/mesh/imported_mesh.hpp>
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include <tautline/core/error.hpp>
+#include <tautline/core/plugin.hpp>
+
+#include "mesh/gmsh/plugin.hpp"
+
+namespace tautline::mesh {
+
+namespace {
+
+/// gmsh itself takes a missing file for an empty one.
+void require_file(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error))
+    throw LibraryError(fmt::format("cannot read the mesh {}: there is no such file", path));
+}
+
+}  // namespace
+
+ImportedMesh import_gmsh(const std::string& path) {
+  using gmsh_plugin::Outcome;
+  require_file(path);
+  static const auto read = reinterpret_cast<decltype(&tautline_read_gmsh)>(
+      load_plugin_symbol(gmsh_plugin::file, gmsh_plugin::symbol, gmsh_plugin::remedy));
+  ImportedMesh mesh;
+  std::string reason;
+  const Outcome outcome = read(path.c_str(), &mesh, &reason);
+  if (outcome == Outcome::unreadable) throw LibraryError(fmt::format("gmsh cannot read the mesh {}: {}", path, reason));
+  if (outcome == Outcome::unsuitable) throw ModelError(fmt::format("the mesh {} {}", path, reason));
+  return mesh;
+}
+
+}  // namespace tautline::mesh

@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include "output/detail/figures.hpp"
+#include "output/detail/layout.hpp"
+#include "output/detail/markup.hpp"
+
+namespace tautline::output::detail {
+
+namespace {
+
+constexpr std::size_t rows_without_folding = 16;
+
+constexpr auto style = R"(
+:root { color-scheme: light dark; --ink: #1d2129; --faint: #5d6572; --line: #dfe3e8; --paper: #ffffff; --card: #f4f6f9;
+  --accent: #0b5aa0; --good: #19713f; --bad: #a8321c; --badpaper: #fdece8; }
+@media (prefers-color-scheme: dark) { :root { --ink: #e6e9ee; --faint: #a0a8b4; --line: #353b45; --paper: #15181d;
+  --card: #1f242c; --accent: #74b4ee; --good: #6cc893; --bad: #f09a86; --badpaper: #3a211c; } }
+* { box-sizing: border-box; }
+body { margin: 0; background: var(--paper); color: var(--ink); font: 15px/1.5 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; }
+main { max-width: 1080px; margin: 0 auto; padding: 28px 22px 60px; }
+h1 { font-size: 1.75rem; line-height: 1.2; margin: 0 0 4px; }
+h2 { font-size: 1.25rem; margin: 40px 0 8px; padding-top: 10px; border-top: 1px solid var(--line); }
+h3 { font-size: 1rem; margin: 22px 0 6px; }
+p { margin: 4px 0 10px; }
+.faint { color: var(--faint); overflow-wrap: anywhere; }
+.status { display: inline-block; padding: 1px 10px; border-radius: 10px; font-size: .82rem; font-weight: 600;
+  border: 1px solid currentColor; color: var(--bad); vertical-align: middle; }
+.status.done { color: var(--good); }
+.alarm { margin: 16px 0; padding: 12px 16px; border-left: 4px solid var(--bad); background: var(--badpaper); border-radius: 4px;
+  white-space: pre-line; }
+.cards { display: grid; grid-template-columns: repeat(auto-fill, minmax(165px, 1fr)); gap: 10px; margin: 18px 0 6px; }
+.card { background: var(--card); border-radius: 8px; padding: 12px 14px; }
+.card b { display: block; font-size: 1.35rem; line-height: 1.25; font-variant-numeric: tabular-nums; }
+.card span { color: var(--faint); font-size: .84rem; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .9rem; }
+th, td { padding: 4px 14px 4px 0; text-align: right; border-bottom: 1px solid var(--line); }
+th { color: var(--faint); font-weight: 600; vertical-align: bottom; }
+th:first-child, td:first-child { text-align: left; }
+dl { display: grid; grid-template-columns: repeat(auto-fill, minmax(250px, 1fr)); gap: 2px 26px; margin: 8px 0; }
+dl div { display: flex; justify-content: space-between; gap: 14px; border-bottom: 1px solid var(--line); padding: 3px 0; }
+dt { color: var(--faint); } dd { margin: 0; text-align: right; font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
+figure { margin: 18px 0; } figure img { max-width: 100%; height: auto; border-radius: 8px; border: 1px solid var(--line); background: #fff; }
+figcaption { color: var(--faint); font-size: .9rem; }
+summary { cursor: pointer; color: var(--accent); }
+@media print { main { max-width: none; padding: 0; } h2 { break-after: avoid; } figure, table, .card { break-inside: avoid; }
+  .card { border: 1px solid #ccc; } }
+)";
+
+std::string cells(const Row& row, const char* tag) {
+  std::string html = "<tr>";
+  for (const auto& cell : row) html += fmt::format("<{0}>{1}</{0}>", tag, escape_markup(cell));
+  return html + "</tr>\n";
+}
+
+}  // namespace
+
+std::string html_table(const Table& table) {
+  if (table.rows.empty()) return "";
+  std::string html =
+      "<div class=\"wide\"><table>\n<thead>" + cells(table.header, "th") + "</thead>\n<tbody>\n";
+  for (const auto& row : table.rows) html += cells(row, "td");
+  html += "</tbody></table></div>\n";
+  const std::string title = escape_markup(table.title);
+  if (table.rows.size() > rows_without_folding)
+    return fmt::format("<h3>{}</h3>\n<details><summary>{} rows</summary>\n{}</details>\n", title,
+                       table.rows.size(), html);
+  return title.empty() ? html : fmt::format("<h3>{}</h3>\n{}", title, html);
+}
+
+std::string html_facts(const std::vector<Fact>& facts) {
+  if (facts.empty()) return "";
+  std::string html = "<dl>\n";
+  for (const auto& [label, value] : facts)
+    html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escape_markup(label), escape_markup(value));
+  return html + "</dl>\n";
+}
+
+std::string html_cards(const std::vector<Fact>& facts) {
+  if (facts.empty()) return "";
+  std::string html = "<div class=\"cards\">\n";
+  for (const auto& [label, value] : facts)
+    html += fmt::format("<div class=\"card\"><b>{}</b><span>{}</span></div>\n", escape_markup(value),
+                        escape_markup(label));
+  return html + "</div>\n";
+}
+
+std::string html_page(const std::string& title, const std::string& body) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, "
+      "initial-scale=1\">\n<title>{}</title>\n<style>{}</style>\n"
+      "</head>\n<body>\n<main>\n{}</main>\n</body>\n</html>\n",
+      escape_markup(title), style, body);
+}
+
+}  // namespace tautline::output::detail

@@ -1,0 +1,125 @@
+#include "output/detail/story.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "output/detail/figures.hpp"
+
+namespace tautline::output::detail {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void add(std::vector<Fact>& facts, const char* label, const Json& value, const char* unit = "",
+         double scale = 1) {
+  if (!value.is_null()) facts.emplace_back(label, show(value, unit, scale));
+}
+
+/// Largest tension and number of slack cables of all groups.
+void add_tensions(std::vector<Fact>& facts, const Json& groups) {
+  std::optional<double> largest;
+  double slack = 0;
+  for (const auto& group : groups) {
+    if (const auto tension = number(member(group, "tension_max")))
+      largest = std::max(largest.value_or(*tension), *tension);
+    slack += number(member(group, "slack")).value_or(0);
+  }
+  if (!largest) return;
+  facts.emplace_back("largest tension", show(largest, "N"));
+  facts.emplace_back("slack cables", fmt::format("{:.0f}", slack));
+}
+
+void add_first(std::vector<Fact>& facts, const char* label, const Json& list, const char* unit) {
+  if (list.is_array() && !list.empty()) add(facts, label, list[0], unit);
+}
+
+std::vector<Fact> headline(const Json& results) {
+  std::vector<Fact> facts;
+  const Json& surface = last_of(results, "surface");
+  add(facts, "surface error, RMS", member(surface, "rms"), "mm", 1e3);
+  add(facts, "RMS from the best fit", member(surface, "rms_best_fit"), "mm", 1e3);
+  add(facts, "gain loss", member(surface, "gain_loss_db"), "dB");
+  add_first(facts, "first frequency", last_of(results, "frequencies"), "Hz");
+  add_first(facts, "buckling load factor", last_of(results, "factors"), "");
+  add(facts, "critical load factor", last_of(results, "critical_lambda"));
+  add_tensions(facts, last_of(results, "groups"));
+  add(facts, "mass", member(member(results, "model"), "mass"), "kg");
+  add(facts, "time", member(results, "wall_seconds"), "s");
+  return facts;
+}
+
+std::vector<Fact> model_facts(const Json& model) {
+  std::vector<Fact> facts;
+  for (const auto& [name, label] :
+       {Fact{"nodes", "nodes"}, Fact{"dofs", "degrees of freedom"}, Fact{"cables", "cables"},
+        Fact{"beams", "beams"}, Fact{"membranes", "membranes"}, Fact{"shells", "shells"}}) {
+    const Json& value = member(model, name.c_str());
+    if (number(value).value_or(0) != 0) facts.emplace_back(label, show(value));
+  }
+  add(facts, "mass", member(model, "mass"), "kg");
+  const Json& by_group = member(model, "mass_by_group");
+  if (by_group.is_object())
+    for (const auto& [name, mass] : by_group.items()) facts.emplace_back("mass of " + name, show(mass, "kg"));
+  return facts;
+}
+
+std::vector<Fact> program_facts(const Json& results) {
+  std::vector<Fact> facts;
+  const Json& program = member(results, "program");
+  if (program.is_object())
+    for (const auto& [name, value] : program.items())
+      facts.emplace_back(name == "version" ? "tautline" : name, text(value));
+  const auto sha = text(member(member(results, "deck"), "sha256"));
+  if (!sha.empty()) facts.emplace_back("sha256 of the deck", sha);
+  return facts;
+}
+
+Table timings(const Json& steps) {
+  Table table{"Time and memory",
+              {"step", "wall [s]", "assembly [s]", "factorisation [s]", "solve [s]", "other [s]",
+               "factorisations", "peak memory [MB]"},
+              {}};
+  for (const auto& step : steps) {
+    const Json& t = member(step, "timings");
+    table.rows.push_back({text(member(step, "name")), show(member(step, "wall_seconds"), "", 1, 3),
+                          show(member(t, "assembly"), "", 1, 3), show(member(t, "factorisation"), "", 1, 3),
+                          show(member(t, "solve"), "", 1, 3), show(member(t, "other"), "", 1, 3),
+                          show(member(step, "factorisations")),
+                          show(member(step, "peak_memory_bytes"), "", 1e-6, 3)});
+  }
+  return table;
+}
+
+}  // namespace
+
+const Json& last_of(const Json& results, const char* name) {
+  const Json& steps = member(results, "steps");
+  for (auto step = steps.rbegin(); step != steps.rend(); ++step)
+    if (const Json& value = member(*step, name); !value.is_null()) return value;
+  return member(Json(), "");
+}
+
+Story tell(const Json& results) {
+  Story story;
+  const Json& deck = member(results, "deck");
+  story.deck = text(member(deck, "path"));
+  story.title = text(member(deck, "title"));
+  if (story.title.empty()) story.title = story.deck.empty() ? "Results" : story.deck;
+  story.status = words(text(member(results, "status")));
+  if (story.status.empty()) story.status = "unknown";
+  story.reason = text(member(results, "reason"));
+  story.headline = headline(results);
+  story.model = model_facts(member(results, "model"));
+  story.program = program_facts(results);
+  const double mass = number(member(member(results, "model"), "mass")).value_or(0);
+  const Json& steps = member(results, "steps");
+  for (const auto& step : steps) story.steps.push_back(tell_step(step, mass));
+  story.timings = timings(steps);
+  return story;
+}
+
+}  // namespace tautline::output::detail

@@ -1,0 +1,152 @@
+#include <tautline/output/tables.hpp>
+
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tautline/core/error.hpp>
+#include "output/detail/files.hpp"
+
+namespace tautline::output {
+
+namespace {
+
+/// Rows of text in memory, written at the end: 10^5 rows are a few megabytes.
+class Table {
+ public:
+  explicit Table(const char* header) : text_(header) { text_ += '\n'; }
+  template <typename... Args>
+  void row(fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
+    text_ += '\n';
+  }
+  void write(const std::string& path) const { detail::write_file(path, text_); }
+
+ private:
+  std::string text_;
+};
+
+/// A name as a csv cell: quoted where it holds a comma, a quote or a line end (RFC 4180).
+std::string cell(const std::string& name) {
+  if (name.find_first_of(",\"\n\r") == std::string::npos) return name;
+  std::string quoted = "\"";
+  for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::vector<std::string> group_cells(const model::Model& model) {
+  std::vector<std::string> cells;
+  for (const auto& group : model.groups) cells.push_back(cell(group.name));
+  return cells;
+}
+
+void label(std::vector<std::string>& labels, int node, const std::string& name) {
+  auto& label = labels.at(static_cast<std::size_t>(node));
+  if (label.empty()) label = name;
+}
+
+template <typename Elements>
+void label_by_elements(std::vector<std::string>& labels, const Elements& elements,
+                       const std::vector<std::string>& groups) {
+  for (const auto& element : elements)
+    for (const int node : element.nodes) label(labels, node, groups[static_cast<std::size_t>(element.group)]);
+}
+
+/// The first selection that lists the node; else the group of the first cable, beam or membrane at it.
+std::vector<std::string> node_labels(const model::Model& model) {
+  std::vector<std::string> labels(model.nodes.size());
+  for (const auto& [name, selection] : model.selections)
+    for (const int node : selection.nodes) label(labels, node, cell(name));
+  const auto groups = group_cells(model);
+  label_by_elements(labels, model.cables, groups);
+  label_by_elements(labels, model.beams, groups);
+  label_by_elements(labels, model.membranes, groups);
+  return labels;
+}
+
+void require_size(const std::string& path, const char* what, std::size_t have, std::size_t want) {
+  if (have != want)
+    throw LibraryError(fmt::format("cannot write {}: {} {} for a model with {}", path, have, what, want));
+}
+
+}  // namespace
+
+void write_form_finding_nodes(const std::string& path, const model::Model& structure) {
+  Table table("id,group,x,y,z");
+  const auto labels = node_labels(structure);
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i) {
+    const Vec3& x = structure.nodes[i];
+    table.row("{},{},{:.17g},{:.17g},{:.17g}", i + 1, labels[i], x[0], x[1], x[2]);
+  }
+  table.write(path);
+}
+
+void write_nodes(const std::string& path, const model::Model& model, const model::State& state) {
+  require_size(path, "displacements", state.displacement.size(), model.nodes.size());
+  Table table("id,group,x_ref,y_ref,z_ref,x,y,z,ux,uy,uz");
+  const auto labels = node_labels(model);
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    const Vec3 &x_ref = model.nodes[i], &u = state.displacement[i];
+    const Vec3 x_cur = x_ref + u;
+    table.row("{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}", i + 1,
+              labels[i], x_ref[0], x_ref[1], x_ref[2], x_cur[0], x_cur[1], x_cur[2], u[0], u[1], u[2]);
+  }
+  table.write(path);
+}
+
+void write_cables(const std::string& path, const model::Model& model, const model::Response& response) {
+  require_size(path, "cable results", response.cables.size(), model.cables.size());
+  Table table("id,group,node_1,node_2,length,unstressed_length,tension,slack");
+  const auto groups = group_cells(model);
+  for (std::size_t i = 0; i < model.cables.size(); ++i) {
+    const auto& cable = model.cables[i];
+    const auto& result = response.cables[i];
+    table.row("{},{},{},{},{:.17g},{:.17g},{:.17g},{:d}", i + 1,
+              groups[static_cast<std::size_t>(cable.group)], cable.nodes[0] + 1, cable.nodes[1] + 1,
+              result.length, model.unstressed_length(cable), result.tension, result.slack);
+  }
+  table.write(path);
+}
+
+void write_beams(const std::string& path, const model::Model& model, const model::Response& response) {
+  require_size(path, "beam results", response.beams.size(), model.beams.size());
+  Table table(
+      "id,group,node_1,node_2,axial,shear_2,shear_3,torque,moment_2_start,moment_3_start,moment_2_end,moment_"
+      "3_end");
+  const auto groups = group_cells(model);
+  for (std::size_t i = 0; i < model.beams.size(); ++i) {
+    const auto& beam = model.beams[i];
+    const auto& f = response.beams[i];
+    table.row("{},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}", i + 1,
+              groups[static_cast<std::size_t>(beam.group)], beam.nodes[0] + 1, beam.nodes[1] + 1, f.axial,
+              f.shear[0], f.shear[1], f.torque, f.end_moment(1, 0), f.end_moment(2, 0), f.end_moment(1, 1),
+              f.end_moment(2, 1));
+  }
+  table.write(path);
+}
+
+void write_cut_list(const std::string& path, const model::Model& model, const model::Response& response) {
+  require_size(path, "cable results", response.cables.size(), model.cables.size());
+  struct Cut {
+    double unstressed_length = 0;
+    double weighted_tension = 0;  ///< sum of tension times unstressed length over the segments
+  };
+  std::map<std::pair<int, int>, Cut> cuts;
+  for (std::size_t i = 0; i < model.cables.size(); ++i) {
+    const auto& cable = model.cables[i];
+    const double length = model.unstressed_length(cable);
+    auto& cut = cuts[{cable.group, cable.parent}];
+    cut.unstressed_length += length;
+    cut.weighted_tension += length * response.cables[i].tension;
+  }
+  Table table("id,group,unstressed_length,marking_tension");
+  const auto groups = group_cells(model);
+  for (const auto& [key, cut] : cuts)
+    table.row("{},{},{:.17g},{:.17g}", key.second + 1, groups[static_cast<std::size_t>(key.first)],
+              cut.unstressed_length, cut.weighted_tension / cut.unstressed_length);
+  table.write(path);
+}
+
+}  // namespace tautline::output

@@ -1,0 +1,97 @@
+#include "steps/context.hpp"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include <tautline/core/error.hpp>
+#include <tautline/la/session.hpp>
+#include <tautline/output/results.hpp>
+#include <tautline/reflector/perimeter_truss.hpp>
+
+namespace tautline::steps {
+
+Context::Context(const deck::Deck& the_deck, std::string directory, bool pictures, Progress& the_progress)
+    : deck(the_deck), progress(the_progress), structure(build_structure(the_deck)), directory_(std::move(directory)),
+      pictures_(pictures), root_(la::rank() == 0), fields_(directory_, la::rank(), la::size()) {
+  if (deck.reflector) surface = reflector::make_paraboloid(*deck.reflector);
+}
+
+assembly::System& Context::system() {
+  if (!system_) set_system(structure);
+  return *system_;
+}
+
+analysis::Workspace& Context::workspace() {
+  system();
+  return *workspace_;
+}
+
+void Context::set_system(model::Model mesh) {
+  model::validate(mesh);
+  system_ = std::make_unique<assembly::System>(std::move(mesh));
+  workspace_ = std::make_unique<analysis::Workspace>(system_->new_matrix());
+}
+
+void Context::save() {
+  la::on_root([&] { output::write_results(path("results.json"), results); });
+}
+
+template <class Picture>
+void Context::draw_any(const std::string& name, const std::string& caption, const Picture& picture) {
+  if (!pictures_ || !root_) return;
+  const std::string file = fmt::format("pictures/{}_{}.png", step_name, name);
+  try {
+    std::filesystem::create_directories(path("pictures"));
+    output::draw(picture, path(file));
+    results["pictures"].push_back({{"file", file}, {"caption", caption}, {"step", step_name}});
+  } catch (const LibraryError& error) {
+    progress.say(fmt::format("warning: no pictures: {}", error.what()));
+    results["warnings"].push_back(error.what());
+    pictures_ = false;
+  }
+}
+
+void Context::draw(const std::string& name, const std::string& caption, const output::View& view) {
+  draw_any(name, caption, view);
+}
+
+void Context::draw(const std::string& name, const std::string& caption, const output::Chart& chart) {
+  draw_any(name, caption, chart);
+}
+
+void Context::write_fields(const std::string& name, const output::FieldGrid& grid) {
+  if (!deck.output.fields) return;
+  const auto& ranks = system().dof_map().node_rank;
+  std::vector<int> owner;
+  for (const auto& line : grid.lines) owner.push_back(ranks[line[0]]);
+  for (const auto& triangle : grid.triangles) owner.push_back(ranks[triangle[0]]);
+  fields_.write(name, output::extract_piece(grid, owner, la::rank()));
+}
+
+assembly::Boundary Context::boundary(const std::vector<std::string>& hold, const std::vector<std::string>& loads,
+                                     bool loaded) const {
+  const auto& model = system_->model();
+  assembly::Boundary boundary;
+  boundary.supports = model.supports;
+  if (!hold.empty()) boundary.supports.push_back({"held", hold, model.nodes_of(hold)});
+  if (!loaded) return boundary;
+  const auto wanted = [&](const std::string& name) {
+    return loads.empty() || std::find(loads.begin(), loads.end(), name) != loads.end();
+  };
+  for (const auto& load : model.loads)
+    if (wanted(load.name)) boundary.loads.push_back(load);
+  for (const auto& load : deck.loads)
+    if (load.acceleration && wanted(load.name)) boundary.acceleration += *load.acceleration;
+  return boundary;
+}
+
+analysis::PathSummary follow(Context& context, const std::string& what) {
+  const auto report = [&](double lambda, int iteration, double residual) {
+    context.progress.update(
+        fmt::format("{} | {}: lambda {:.4g}, iteration {}, residual {:.1e}", context.step_name, what, lambda, iteration, residual));
+  };
+  return analysis::follow_path(context.system(), context.workspace(), context.deck.solver, report);
+}
+
+}  // namespace tautline::steps

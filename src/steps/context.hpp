@@ -1,0 +1,81 @@
+#pragma once
+/// @file
+/// What the steps of a run share: the structure as it becomes clearer, the finite-element system, and where results go.
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include <tautline/assembly/system.hpp>
+#include <tautline/core/progress.hpp>
+#include <tautline/deck/deck.hpp>
+#include <tautline/output/fields.hpp>
+#include <tautline/output/pictures.hpp>
+#include <tautline/reflector/paraboloid.hpp>
+#include <tautline/reflector/surface_error.hpp>
+
+namespace tautline::steps {
+
+using Json = nlohmann::ordered_json;
+
+class Context {
+ public:
+  Context(const deck::Deck& deck, std::string directory, bool pictures, Progress& progress);
+
+  const deck::Deck& deck;
+  Progress& progress;
+  model::Model structure;                         ///< as described; after form-finding, as found
+  std::optional<reflector::Paraboloid> surface;   ///< of a reflector
+  std::string step_name;                          ///< of the step in hand
+  Json results;                                   ///< the whole results.json
+
+  bool is_root() const { return root_; }
+  bool draws() const { return pictures_; }
+
+  /// The finite-element system; made from `structure` without subdivision if no step has made one.
+  assembly::System& system();
+  analysis::Workspace& workspace();
+  bool has_system() const { return system_ != nullptr; }
+  void set_system(model::Model mesh);
+
+  /// DIR/name
+  std::string path(const std::string& name) const { return directory_ + "/" + name; }
+  /// Writes results.json (rank 0).
+  void save();
+  /// Draws DIR/pictures/<step>_<name>.png (rank 0) and notes it with its caption; a failure to draw is told once and noted.
+  void draw(const std::string& name, const std::string& caption, const output::View& view);
+  void draw(const std::string& name, const std::string& caption, const output::Chart& chart);
+  /// Writes a moment of fields (all ranks, each its piece).
+  void write_fields(const std::string& name, const output::FieldGrid& grid);
+  /// Boundary with the deck's supports, all of `hold` clamped, and the loads named (all if empty and `loaded`).
+  assembly::Boundary boundary(const std::vector<std::string>& hold, const std::vector<std::string>& loads, bool loaded) const;
+
+ private:
+  template <class Picture>
+  void draw_any(const std::string& name, const std::string& caption, const Picture& picture);
+
+  std::string directory_;
+  bool pictures_, root_;
+  std::unique_ptr<assembly::System> system_;
+  std::unique_ptr<analysis::Workspace> workspace_;
+  output::FieldSeries fields_;
+};
+
+/// The structure of a deck: reflector or model, with sections, initial states, supports and loads. @throws ModelError
+model::Model build_structure(const deck::Deck& deck);
+
+// One function for each step kind, in the file of that name. Each returns its entry of results.json without name, kind and
+// times; `status` is "done" or "not_converged".
+Json run_step(Context& context, const FormFindingOptions& options);
+Json run_step(Context& context, const MeshOptions& options);
+Json run_step(Context& context, const EquilibriumOptions& options);
+Json run_step(Context& context, const TuningStepOptions& options);
+Json run_step(Context& context, const ModalOptions& options);
+
+/// Follows the path of a stage that was begun, with progress on the live line.
+analysis::PathSummary follow(Context& context, const std::string& what);
+
+}  // namespace tautline::steps

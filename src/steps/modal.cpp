@@ -1,0 +1,130 @@
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <tautline/la/eigen_solver.hpp>
+#include <tautline/la/session.hpp>
+#include <tautline/model/response.hpp>
+
+#include "steps/context.hpp"
+#include "steps/summaries.hpp"
+
+namespace tautline::steps {
+
+namespace {
+
+/// Unit rigid motions about the origin in the current positions: three translations, three rotations.
+std::vector<la::Vector> rigid_motions(const assembly::System& system) {
+  const auto& map = system.dof_map();
+  const auto positions = model::positions(system.model(), system.state());
+  std::vector<la::Vector> motions;
+  for (int k = 0; k < 6; ++k) {
+    std::vector<double> values(static_cast<std::size_t>(system.n_dofs()), 0.0);
+    const Vec3 axis = Vec3::Unit(k % 3);
+    for (std::size_t node = 0; node < positions.size(); ++node) {
+      const Vec3 motion = k < 3 ? axis : Vec3(axis.cross(positions[node]));
+      for (int c = 0; c < 3; ++c) values[3 * map.displacement_block[node] + c] = motion[c];
+      if (k >= 3 && map.rotation_block[node] >= 0) values[3 * map.rotation_block[node] + k % 3] = 1;
+    }
+    la::Vector vector(map.layout);
+    vector.write(std::span(values).subspan(3 * map.layout.first, 3 * map.layout.local));
+    motions.push_back(std::move(vector));
+  }
+  return motions;
+}
+
+/// (r^T M phi)^2 for modes normalised to phi^T M phi = 1: the mass that takes part [kg], [kg m^2].
+Json effective_masses(const assembly::System& system, const la::SymmetricMatrix& mass, const la::EigenPairs& pairs) {
+  const auto motions = rigid_motions(system);
+  Json table = Json::array();
+  la::Vector product(system.layout());
+  for (const auto& mode : pairs.vectors) {
+    mass.multiply(mode, product);
+    Json row = Json::array();
+    for (const auto& motion : motions) row.push_back(above_rounding(std::pow(motion.dot(product), 2), 1e-9));
+    table.push_back(row);
+  }
+  return table;
+}
+
+/// The mode scaled to a tenth of the structure's size, its largest component positive.
+Points display_shape(const assembly::System& system, const la::Vector& mode) {
+  Points shape = system.nodal(mode).displacement;
+  double largest = 0;
+  for (const auto& v : shape) largest = std::max(largest, v.norm());
+  double signed_peak = 0;
+  for (const auto& v : shape)
+    for (int c = 0; c < 3; ++c)
+      if (std::abs(v[c]) > std::abs(signed_peak) * (1 + 1e-6)) signed_peak = v[c];
+  const double scale = (signed_peak < 0 ? -1.0 : 1.0) / largest;
+  for (auto& v : shape) v *= scale;
+  return shape;
+}
+
+void draw_mode(Context& context, const Points& shape, int number, double frequency) {
+  const auto& system = context.system();
+  const auto& model = system.model();
+  Points points = model::positions(model, system.state());
+  Vec3 low = points.front(), high = low;
+  for (const auto& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double size = 0.08 * (high - low).norm();
+  output::ViewLayer surface, frame, rest;
+  for (std::size_t i = 0; i < points.size(); ++i) surface.point_scalars.push_back(shape[i].norm());
+  rest.points = points;
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] += size * shape[i];
+  surface.points = frame.points = points;
+  for (const auto& m : model.membranes) surface.triangles.push_back(m.nodes);
+  for (const auto& b : model.beams) frame.lines.push_back(b.nodes);
+  if (model.membranes.empty())
+    for (const auto& c : model.cables) surface.lines.push_back(c.nodes);
+  rest.lines = frame.lines;
+  frame.line_width = 3;
+  rest.colour = Vec3(0.75, 0.75, 0.78);
+  output::View view;
+  view.title = fmt::format("Mode {}: {:.4g} Hz", number, frequency);
+  view.layers = {std::move(surface), std::move(rest), std::move(frame)};
+  view.scalar_title = "relative amplitude";
+  context.draw(fmt::format("mode_{}", number), fmt::format("Mode {} of the prestressed structure, {:.4g} Hz (amplitude enlarged; grey: at rest)", number, frequency), view);
+}
+
+}  // namespace
+
+Json run_step(Context& context, const ModalOptions& options) {
+  auto& system = context.system();
+  system.begin_stage(context.boundary({}, {}, true));
+  auto& workspace = context.workspace();
+  system.tangent(workspace.tangent);
+  const auto mass = system.mass();
+  context.progress.update(fmt::format("{} | {} modes of {} unknowns", context.step_name, options.modes, system.n_dofs()));
+  const auto pairs = la::solve_vibration(workspace.tangent, mass, options.modes);
+  Json entry;
+  entry["status"] = "done";
+  entry["frequencies"] = Json::array();
+  entry["effective_mass"] = effective_masses(system, mass, pairs);
+  entry["residuals"] = Json::array();
+  auto grid = field_grid(context, model::evaluate_response(system.model(), system.state()));
+  grid.point_fields.clear();
+  for (int i = 0; i < options.modes; ++i) {
+    const double eigenvalue = pairs.values[i];
+    const double frequency = std::copysign(std::sqrt(std::abs(eigenvalue)), eigenvalue) / (2 * std::numbers::pi);
+    entry["frequencies"].push_back(frequency);
+    entry["residuals"].push_back(above_rounding(pairs.residuals[i], 1e-6));
+    const Points shape = display_shape(system, pairs.vectors[i]);
+    output::Field field{fmt::format("mode {} ({:.4g} Hz)", i + 1, frequency), 3, {}};
+    for (const auto& v : shape) field.values.insert(field.values.end(), v.begin(), v.end());
+    grid.point_fields.push_back(std::move(field));
+    if (i < 3 && context.draws()) draw_mode(context, shape, i + 1, frequency);
+    if (eigenvalue < 0) {
+      entry["status"] = "not_converged";
+      entry["reason"] = fmt::format("mode {} has a negative eigenvalue {:.3e}: the state is unstable", i + 1, eigenvalue);
+    }
+  }
+  context.write_fields(context.step_name, grid);
+  return entry;
+}
+
+}  // namespace tautline::steps

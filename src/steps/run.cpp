@@ -1,0 +1,143 @@
+#include <tautline/steps/run.hpp>
+
+#include <chrono>
+#include <iostream>
+
+#include <fmt/format.h>
+
+#include <tautline/core/interrupt.hpp>
+#include <tautline/la/session.hpp>
+#include <tautline/output/report.hpp>
+#include <tautline/output/results.hpp>
+#include <tautline/output/tables.hpp>
+#include <tautline/steps/version.hpp>
+
+#include "steps/context.hpp"
+#include "steps/summaries.hpp"
+
+namespace tautline::steps {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Counters of the system at one moment, for the difference that a step makes.
+struct Counters {
+  la::SolverTimings solver;
+  double assembly = 0;
+
+  static Counters of(Context& context) {
+    if (!context.has_system()) return {};
+    return {context.workspace().solver.timings(), context.system().assembly_seconds()};
+  }
+};
+
+void add_performance(Json& entry, const Counters& before, const Counters& after, double wall) {
+  const bool renewed = after.solver.factorisations < before.solver.factorisations || after.assembly < before.assembly;
+  const Counters base = renewed ? Counters{} : before;
+  const double factorisation = after.solver.factorisation - base.solver.factorisation;
+  const double solve = after.solver.solve - base.solver.solve, assembly = after.assembly - base.assembly;
+  entry["wall_seconds"] = wall;
+  entry["timings"] = {{"assembly", assembly},
+                      {"factorisation", factorisation},
+                      {"solve", solve},
+                      {"other", std::max(0.0, wall - factorisation - solve - assembly)}};
+  entry["factorisations"] = after.solver.factorisations - base.solver.factorisations;
+  entry["peak_memory_bytes"] = la::peak_memory_bytes();
+}
+
+Json start_results(const deck::Deck& deck, Context& context) {
+  const auto versions = la::library_versions();
+  Json results{{"format", "tautline-results"}, {"version", 1}};
+  results["program"] = {{"version", version()}, {"petsc", versions.petsc}, {"slepc", versions.slepc}, {"mumps", versions.mumps},
+                        {"ranks", la::size()}};
+  results["deck"] = {{"path", deck.path}, {"sha256", deck.sha256}, {"title", deck.title}, {"parameters", deck.parameters}};
+  results["status"] = "interrupted";
+  results["reason"] = "the run has not come to its end";
+  results["model"] = model_json(context.structure, 0);
+  results["model"]["mass_by_group"] = model::mass_by_group(context.structure);
+  results["steps"] = Json::array();
+  results["pictures"] = Json::array();
+  return results;
+}
+
+/// Runs one step and appends its entry. @return its status
+std::string run_and_record(Context& context, const Step& step) {
+  context.step_name = step.name;
+  context.progress.say(fmt::format("step {} ({})", step.name, step.kind));
+  const auto start = Clock::now();
+  const Counters before = Counters::of(context);
+  Json entry{{"name", step.name}, {"kind", step.kind}};
+  entry.update(std::visit([&](const auto& options) { return run_step(context, options); }, step.options));
+  add_performance(entry, before, Counters::of(context), seconds_since(start));
+  const std::string status = entry["status"];
+  if (status != "done") context.results["reason"] = fmt::format("step \"{}\": {}", step.name, entry["reason"].get<std::string>());
+  context.results["steps"].push_back(std::move(entry));
+  return status;
+}
+
+void write_tables(Context& context) {
+  if (!context.deck.output.tables) return;
+  output::write_form_finding_nodes(context.path("form_finding_nodes.csv"), context.structure);
+  if (!context.has_system()) return;
+  const auto& system = context.system();
+  const auto response = model::evaluate_response(system.model(), system.state());
+  output::write_nodes(context.path("nodes.csv"), system.model(), system.state());
+  output::write_cables(context.path("cables.csv"), system.model(), response);
+  output::write_beams(context.path("beams.csv"), system.model(), response);
+  output::write_cut_list(context.path("cut_list.csv"), system.model(), response);
+}
+
+/// Closes the books: tables, results.json, report, and the summary on stdout.
+void finish(Context& context, const RunSettings& settings, Clock::time_point start) {
+  context.progress.finish();
+  la::on_root([&] { write_tables(context); });
+  if (context.has_system()) {
+    auto& model = context.results["model"];
+    const auto by_group = model["mass_by_group"];
+    model = model_json(context.system().model(), context.system().n_dofs());
+    model["mass_by_group"] = by_group;
+  }
+  context.results["wall_seconds"] = seconds_since(start);
+  context.save();
+  la::on_root([&] {
+    if (context.deck.output.report) output::write_report({settings.directory});
+    std::cout << output::summary_text(context.results) << std::flush;
+  });
+}
+
+}  // namespace
+
+ExitCode run(const deck::Deck& deck, const RunSettings& settings, Progress& progress) {
+  const auto start = Clock::now();
+  la::on_root([&] { output::prepare_directory(settings.directory); });
+  Context context(deck, settings.directory, settings.pictures && deck.output.pictures, progress);
+  context.results = start_results(deck, context);
+  ExitCode code = ExitCode::done;
+  std::string status = "done";
+  try {
+    for (const auto& step : deck.steps) {
+      if (la::true_on_any_rank(interrupt_requested())) throw Interrupted();
+      status = run_and_record(context, step);
+      context.save();
+      if (status != "done") break;
+    }
+    if (status != "done") code = ExitCode::not_converged;
+  } catch (const Interrupted& error) {
+    status = "interrupted";
+    context.results["reason"] = error.what();
+    code = ExitCode::interrupted;
+  } catch (const std::exception& error) {
+    context.results["reason"] = error.what();
+    context.save();
+    throw;
+  }
+  context.results["status"] = status;
+  if (status == "done") context.results["reason"] = "every step came to its end";
+  finish(context, settings, start);
+  return code;
+}
+
+}  // namespace tautline::steps

@@ -1,0 +1,140 @@
+#include <cmath>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <fmt/os.h>
+
+#include <tautline/la/session.hpp>
+#include <tautline/output/pictures.hpp>
+#include <tautline/output/results.hpp>
+#include <tautline/steps/run.hpp>
+
+#include "steps/context.hpp"
+
+namespace tautline::steps {
+
+namespace {
+
+/// One row of the study: the figures of the last step that measured the surface.
+Json row_of(const Json& results, int subdivisions) {
+  Json row{{"subdivisions", subdivisions}, {"status", results["status"]}, {"dofs", results["model"]["dofs"]}};
+  int newton = 0, factorisations = 0;
+  double solver = 0;
+  for (const auto& step : results["steps"]) {
+    if (step.contains("surface")) row["surface"] = step["surface"];
+    if (step.contains("stages"))
+      for (const auto& stage : step["stages"]) newton += stage["newton_iterations"].get<int>();
+    if (step.contains("newton_iterations")) newton += step["newton_iterations"].get<int>();
+    factorisations += step["factorisations"].get<int>();
+    solver += step["timings"]["factorisation"].get<double>() + step["timings"]["solve"].get<double>();
+  }
+  row["newton_iterations"] = newton;
+  row["factorisations"] = factorisations;
+  row["solver_seconds"] = solver;
+  row["wall_seconds"] = results["wall_seconds"];
+  return row;
+}
+
+constexpr const char* measures[] = {"rms", "rms_direct", "rms_best_fit", "rms_area_weighted", "rms_nodes"};
+
+/// Order p and limit f of f_h = f + C h^p through the three finest meshes (Roache 1994), h = 1 / subdivisions.
+/// Empty where the three values do not approach a limit from one side.
+Json extrapolate(const Json& rows, const std::string& measure) {
+  const std::size_t n = rows.size();
+  if (n < 3) return nullptr;
+  const auto value = [&](std::size_t i) { return rows[i]["surface"][measure].get<double>(); };
+  const auto h = [&](std::size_t i) { return 1.0 / rows[i]["subdivisions"].get<int>(); };
+  const double h1 = h(n - 1), h2 = h(n - 2), h3 = h(n - 3), f1 = value(n - 1), f2 = value(n - 2), f3 = value(n - 3);
+  const double wanted = (f3 - f2) / (f2 - f1);
+  const auto ratio = [&](double p) { return (std::pow(h3, p) - std::pow(h2, p)) / (std::pow(h2, p) - std::pow(h1, p)); };
+  double low = 0.05, high = 10;
+  if (!std::isfinite(wanted) || wanted <= ratio(low) || wanted >= ratio(high)) return nullptr;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = (low + high) / 2;
+    (ratio(middle) < wanted ? low : high) = middle;
+  }
+  const double limit = f1 - (f2 - f1) / (std::pow(h2 / h1, low) - 1) * -1;
+  return {{"order", low}, {"limit", limit}};
+}
+
+void write_csv(const std::string& path, const Json& rows) {
+  auto file = fmt::output_file(path);
+  file.print("subdivisions,dofs,rms,rms_direct,rms_best_fit,rms_area_weighted,rms_nodes,newton_iterations,factorisations,solver_seconds,wall_seconds\n");
+  for (const auto& row : rows) {
+    file.print("{},{}", row["subdivisions"].get<int>(), row["dofs"].get<int>());
+    for (const char* measure : measures) file.print(",{:.17g}", row["surface"][measure].get<double>());
+    file.print(",{},{},{:.6g},{:.6g}\n", row["newton_iterations"].get<int>(), row["factorisations"].get<int>(),
+               row["solver_seconds"].get<double>(), row["wall_seconds"].get<double>());
+  }
+}
+
+output::Chart chart_of(const Json& rows) {
+  output::Chart chart;
+  chart.title = "Surface error against refinement";
+  chart.x_label = "parts of a facet side";
+  chart.y_label = "RMS [mm]";
+  for (const char* measure : measures) {
+    output::Curve curve{measure, {}, {}, true};
+    for (const auto& row : rows) {
+      curve.x.push_back(row["subdivisions"].get<double>());
+      curve.y.push_back(1e3 * row["surface"][measure].get<double>());
+    }
+    chart.curves.push_back(curve);
+  }
+  return chart;
+}
+
+std::string text_of(const Json& study) {
+  std::string text = fmt::format("{:>4} {:>9} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>9} {:>9}\n", "s", "unknowns", "rms", "direct",
+                                 "best fit", "area", "nodes", "Newton", "MUMPS s", "wall s");
+  for (const auto& row : study["rows"]) {
+    text += fmt::format("{:>4} {:>9}", row["subdivisions"].get<int>(), row["dofs"].get<int>());
+    for (const char* measure : measures) text += fmt::format(" {:>10.4f}", 1e3 * row["surface"][measure].get<double>());
+    text += fmt::format(" {:>7} {:>9.2f} {:>9.2f}\n", row["newton_iterations"].get<int>(), row["solver_seconds"].get<double>(),
+                        row["wall_seconds"].get<double>());
+  }
+  text += "(RMS in mm)\n";
+  for (const char* measure : measures) {
+    const auto& e = study["extrapolation"][measure];
+    if (e.is_null()) text += fmt::format("{:<20} no steady order in the three finest meshes\n", measure);
+    else text += fmt::format("{:<20} order {:.2f}, extrapolated {:.4f} mm\n", measure, e["order"].get<double>(), 1e3 * e["limit"].get<double>());
+  }
+  return text;
+}
+
+void write_study(const std::string& directory, const Json& study, bool pictures, Progress& progress) {
+  output::write_results(directory + "/study.json", study);
+  if (!study["rows"].empty()) write_csv(directory + "/study.csv", study["rows"]);
+  if (!pictures || study["rows"].size() < 2) return;
+  try {
+    output::draw(chart_of(study["rows"]), directory + "/study.png");
+  } catch (const LibraryError& error) {
+    progress.say(fmt::format("warning: no picture: {}", error.what()));
+  }
+}
+
+}  // namespace
+
+ExitCode study(const std::string& deck_path, const std::vector<std::string>& overrides, const std::vector<int>& subdivisions,
+               const RunSettings& settings, Progress& progress) {
+  Json study{{"format", "tautline-study"}, {"version", 1}, {"deck", deck_path}, {"rows", Json::array()}};
+  ExitCode code = ExitCode::done;
+  for (const int s : subdivisions) {
+    progress.say(fmt::format("study: {} parts of a facet side", s));
+    auto all = overrides;
+    all.push_back(fmt::format("parameters.subdivisions={}", s));
+    const auto deck = deck::read_deck(deck_path, all);
+    const std::string directory = fmt::format("{}/s{}", settings.directory, s);
+    code = run(deck, {directory, settings.pictures}, progress);
+    if (code != ExitCode::done) break;
+    la::on_root([&] { study["rows"].push_back(row_of(output::read_results(directory + "/results.json"), s)); });
+  }
+  la::on_root([&] {
+    for (const char* measure : measures) study["extrapolation"][measure] = extrapolate(study["rows"], measure);
+    write_study(settings.directory, study, settings.pictures, progress);
+    fmt::print("{}", text_of(study));
+  });
+  return code;
+}
+
+}  // namespace tautline::steps

@@ -1,0 +1,33 @@
+#pragma once
+/// @file
+/// Result structs as JSON, and the pictures and fields that several steps share.
+
+#include <nlohmann/json.hpp>
+
+#include <tautline/model/response.hpp>
+#include <tautline/output/fields.hpp>
+#include <tautline/reflector/surface_error.hpp>
+
+#include "steps/context.hpp"
+
+namespace tautline::steps {
+
+/// A residual as results report it: what lies below `floor`, the level of rounding, reads as `floor`, so that figures do not
+/// depend on the number of ranks.
+double above_rounding(double value, double floor);
+
+Json groups_json(const std::map<std::string, model::GroupSummary>& groups);
+Json surface_json(const reflector::SurfaceError& error);
+Json model_json(const model::Model& model, int dofs);
+
+/// The cloth and the net nodes of a reflector in the system's present state.
+reflector::SurfaceSample surface_sample(Context& context);
+reflector::SurfaceError measure(Context& context);
+
+/// Displacement, tension, slack flag, beam forces and axes, membrane stresses, surface deviation.
+output::FieldGrid field_grid(Context& context, const model::Response& response);
+
+/// Pictures of a state: deviation of the cloth, tensions of the nets.
+void draw_state(Context& context, const model::Response& response);
+
+}  // namespace tautline::steps

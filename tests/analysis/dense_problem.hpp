@@ -1,0 +1,82 @@
+#pragma once
+// A nonlinear problem given by two functions of a few unknowns: Newton and the path driver without any elements.
+
+#include <functional>
+
+#include <tautline/analysis/path.hpp>
+
+#include "la/chain.hpp"
+
+namespace tautline::analysis::testing_problem {
+
+using la::testing_chain::dense_of;
+using la::testing_chain::fill;
+using la::testing_chain::full_pattern;
+using la::testing_chain::layout_of;
+using la::testing_chain::vector_of;
+
+/// gradient(x, lambda) = 0 for x of two blocks of three unknowns.
+class DenseProblem : public PathProblem {
+ public:
+  static constexpr int n = 6;
+  using Gradient = std::function<VecX(const VecX& x, double lambda)>;
+  using Hessian = std::function<MatX(const VecX& x)>;
+
+  DenseProblem(Gradient gradient, Hessian hessian) : gradient_(std::move(gradient)), hessian_(std::move(hessian)) {}
+
+  VecX point = VecX::Zero(n);      ///< where the problem is
+  VecX committed = VecX::Zero(n);  ///< where it was when it was kept last
+  double lambda = 1;
+  double reference = 1;  ///< force the residual is compared with
+  double size = 1;       ///< what an increment is compared with
+
+  /// Residual at the present point and lambda.
+  double out_of_balance() const { return gradient_(point, lambda).norm(); }
+
+  const la::BlockLayout& layout() const override { return layout_; }
+  void residual(const la::Vector& x, la::Vector& f) override {
+    const VecX value = gradient_(origin_ + dense_of(x), lambda);
+    f.write(std::span(value.data() + 3 * layout_.first, static_cast<std::size_t>(3 * layout_.local)));
+  }
+  void tangent(la::SymmetricMatrix& k) override { fill(k, hessian_(point)); }
+  void accept(const la::Vector& x) override { point = origin_ + dense_of(x); }
+  void restart() override { origin_ = point; }
+  ResidualNorms norms(const la::Vector& f) const override { return {f.norm(), 0, reference, 0}; }
+  double relative_size(const la::Vector& increment) const override {
+    return dense_of(increment).lpNorm<Eigen::Infinity>() / size;
+  }
+  void set_lambda(double value) override { lambda = value; }
+  void commit() override { committed = point; }
+  void roll_back() override {
+    point = committed;
+    restart();
+  }
+
+ private:
+  Gradient gradient_;
+  Hessian hessian_;
+  la::BlockLayout layout_ = layout_of(n / 3);
+  VecX origin_ = VecX::Zero(n);
+};
+
+inline Workspace workspace() {
+  const auto layout = layout_of(DenseProblem::n / 3);
+  return {la::SymmetricMatrix(layout, full_pattern(layout)), la::DirectSolver()};
+}
+
+/// Six equal and independent unknowns, each with gradient(x, lambda) and slope(x).
+inline DenseProblem six_times(const std::function<double(double, double)>& gradient,
+                              const std::function<double(double)>& slope) {
+  return {[=](const VecX& x, double lambda) {
+            VecX f(x.size());
+            for (int i = 0; i < f.size(); ++i) f[i] = gradient(x[i], lambda);
+            return f;
+          },
+          [=](const VecX& x) {
+            MatX k = MatX::Zero(x.size(), x.size());
+            for (int i = 0; i < x.size(); ++i) k(i, i) = slope(x[i]);
+            return k;
+          }};
+}
+
+}  // namespace tautline::analysis::testing_problem

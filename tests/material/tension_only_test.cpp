@@ -1,0 +1,28 @@
+#include <gtest/gtest.h>
+
+#include <tautline/material/tension_only.hpp>
+
+using tautline::material::tension_only;
+
+TEST(TensionOnly, IsLinearInTension) {
+  const auto answer = tension_only(2e4, 1e-3);
+  EXPECT_DOUBLE_EQ(answer.tension, 20.0);
+  EXPECT_DOUBLE_EQ(answer.slope, 2e4);
+  EXPECT_DOUBLE_EQ(answer.energy_per_length, 0.01);
+  EXPECT_FALSE(answer.slack);
+}
+
+TEST(TensionOnly, CarriesNothingWhenShortened) {
+  for (const double strain : {0.0, -1e-15, -0.5}) {
+    const auto answer = tension_only(2e4, strain);
+    EXPECT_EQ(answer.tension, 0.0);
+    EXPECT_EQ(answer.slope, 0.0);
+    EXPECT_EQ(answer.energy_per_length, 0.0);
+    EXPECT_TRUE(answer.slack);
+  }
+}
+
+TEST(TensionOnly, TensionIsContinuousAtZeroStrain) {
+  EXPECT_LT(tension_only(2e4, 1e-18).tension, 1e-13);
+  EXPECT_FALSE(tension_only(2e4, 1e-18).slack);
+}

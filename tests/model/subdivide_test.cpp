@@ -1,0 +1,265 @@
+#include <tautline/model/subdivide.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include <tautline/core/error.hpp>
+
+#include "messages.hpp"
+#include "model/models.hpp"
+
+namespace tautline::model {
+namespace {
+
+using namespace testing_models;
+using testing_messages::mentions;
+using testing_messages::message_of;
+
+SubdivideOptions parts(int subdivisions, FacetPattern pattern = FacetPattern::structured) {
+  return {subdivisions, pattern, {}};
+}
+
+/// The cloth of two_facets() alone.
+Model two_bare_facets() {
+  auto model = two_facets();
+  model.nodes.resize(4);
+  model.cables.clear();
+  model.beams.clear();
+  model.selections.clear();
+  model.supports.clear();
+  return model;
+}
+
+Vec3 directed_area(const Model& model, const Membrane& m) {
+  const auto& [a, b, c] = m.nodes;
+  return 0.5 * (model.nodes[b] - model.nodes[a]).cross(model.nodes[c] - model.nodes[a]);
+}
+
+std::set<std::pair<int, int>> sides(const Model& model) {
+  std::set<std::pair<int, int>> result;
+  for (const auto& m : model.membranes)
+    for (int k = 0; k < 3; ++k) result.insert(std::minmax(m.nodes[k], m.nodes[(k + 1) % 3]));
+  return result;
+}
+
+/// The prestress as a tensor in space.
+Mat3 prestress_tensor(const Model& model, const Membrane& m) {
+  Mat3 x_ref;
+  x_ref << model.nodes[m.nodes[0]], model.nodes[m.nodes[1]], model.nodes[m.nodes[2]];
+  const Mat<3, 2> axes = element::membrane_frame(x_ref).leftCols<2>();
+  Eigen::Matrix2d local;
+  local << m.prestress[0], m.prestress[2], m.prestress[2], m.prestress[1];
+  return axes * local * axes.transpose();
+}
+
+double smallest_distance(const Points& points) {
+  double smallest = 1e300;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) smallest = std::min(smallest, (points[i] - points[j]).norm());
+  return smallest;
+}
+
+/// Area of each facet kept by its parts, each part facing the same way, no two nodes in one place, Euler's count right.
+void expect_sound_cloth(const Model& structure, const Model& mesh) {
+  std::vector<Vec3> area(structure.membranes.size(), Vec3::Zero());
+  for (const auto& m : mesh.membranes) {
+    const Vec3 own = directed_area(mesh, m), whole = directed_area(structure, structure.membranes[m.parent]);
+    EXPECT_GT(own.dot(whole), 0);
+    area[m.parent] += own;
+  }
+  for (std::size_t i = 0; i < area.size(); ++i)
+    EXPECT_LT((area[i] - directed_area(structure, structure.membranes[i])).norm(), 1e-14);
+  EXPECT_GT(smallest_distance(mesh.nodes), 1e-3);
+  const int v = static_cast<int>(mesh.nodes.size()), e = static_cast<int>(sides(mesh).size()),
+            f = static_cast<int>(mesh.membranes.size());
+  EXPECT_EQ(v - e + f, 1) << "one connected sheet without holes";
+}
+
+class StructuredPattern : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Parts, StructuredPattern, ::testing::Values(1, 2, 3, 4));
+
+TEST_P(StructuredPattern, MakesSSquaredTrianglesThatShareTheNodesOfTheirSides) {
+  const int s = GetParam();
+  const auto structure = two_bare_facets(), mesh = subdivide(structure, parts(s));
+  EXPECT_EQ(static_cast<int>(mesh.membranes.size()), 2 * s * s);
+  EXPECT_EQ(static_cast<int>(mesh.nodes.size()), 2 * (s + 1) * (s + 2) / 2 - (s + 1));
+  expect_sound_cloth(structure, mesh);
+}
+
+TEST_P(StructuredPattern, MakesSimilarTriangles) {
+  const int s = GetParam();
+  const auto structure = two_bare_facets(), mesh = subdivide(structure, parts(s));
+  for (const auto& m : mesh.membranes)
+    EXPECT_NEAR(directed_area(mesh, m).norm() * s * s, directed_area(structure, structure.membranes[m.parent]).norm(),
+                1e-14);
+}
+
+class MappedPattern : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Parts, MappedPattern, ::testing::Values(2, 4, 6));
+
+TEST_P(MappedPattern, FillsEachFacetWithThreePatchesThatShareTheirNodes) {
+  const int s = GetParam(), h = s / 2;
+  const auto structure = two_bare_facets(), mesh = subdivide(structure, parts(s, FacetPattern::mapped));
+  EXPECT_EQ(static_cast<int>(mesh.membranes.size()), 2 * 6 * h * h);
+  const int rim = 3 * s, spokes = 3 * (h - 1), patches = 3 * (h - 1) * (h - 1);
+  EXPECT_EQ(static_cast<int>(mesh.nodes.size()), 2 * (rim + spokes + patches + 1) - (s + 1));
+  expect_sound_cloth(structure, mesh);
+}
+
+TEST(MappedPattern, WithoutSubdivisionIsTheFacetItself) {
+  EXPECT_THROW(subdivide(two_facets(), parts(1, FacetPattern::mapped)), ModelError) << "1 is odd";
+}
+
+class EitherPattern : public ::testing::TestWithParam<FacetPattern> {};
+INSTANTIATE_TEST_SUITE_P(Patterns, EitherPattern, ::testing::Values(FacetPattern::structured, FacetPattern::mapped));
+
+TEST_P(EitherPattern, KeepsTheTensorOfAnAnisotropicPrestress) {
+  const auto structure = two_facets(), mesh = subdivide(structure, parts(4, GetParam()));
+  for (const auto& m : mesh.membranes)
+    EXPECT_LT((prestress_tensor(mesh, m) - prestress_tensor(structure, structure.membranes[m.parent])).norm(), 1e-12 * 400);
+}
+
+TEST_P(EitherPattern, SplitsCablesOnFacetSidesAtTheNodesOfTheCloth) {
+  const auto mesh = subdivide(two_facets(), parts(4, GetParam()));
+  const auto cloth = sides(mesh);
+  int ridge = 0;
+  for (const auto& cable : mesh.cables)
+    if (cable.parent == 0) {
+      ++ridge;
+      EXPECT_TRUE(cloth.contains(std::minmax(cable.nodes[0], cable.nodes[1])));
+    }
+  EXPECT_EQ(ridge, 4);
+}
+
+TEST(Subdivision, LeavesCablesThatAreNoFacetSideWhole) {
+  const auto mesh = subdivide(two_facets(), parts(4));
+  const auto ties = mesh.select("tie").cables;
+  ASSERT_EQ(ties.size(), 1u);
+  EXPECT_EQ(mesh.cables[ties[0]].nodes, (std::array<int, 2>{0, 3}));
+}
+
+TEST(Subdivision, SplitsBeamsOnFacetSidesAndElsewhere) {
+  const auto structure = two_facets(), mesh = subdivide(structure, parts(3));
+  EXPECT_EQ(mesh.select("strut").beams.size(), 3u);
+  EXPECT_EQ(mesh.select("mast").beams.size(), 3u);
+  const auto cloth = sides(mesh);
+  for (const int i : mesh.select("strut").beams)
+    EXPECT_TRUE(cloth.contains(std::minmax(mesh.beams[i].nodes[0], mesh.beams[i].nodes[1])));
+  for (const auto& beam : mesh.beams) EXPECT_EQ(beam.frame, structure.beams[beam.parent].frame);
+}
+
+TEST(Subdivision, RunsThePartsOfALineFromItsFirstEndToItsSecond) {
+  const auto mesh = subdivide(two_facets(), parts(3));
+  for (const auto& [name, first, last] : {std::tuple{"strut", 2, 3}, std::tuple{"mast", 0, 4}}) {
+    int at = first;
+    for (const int i : mesh.select(name).beams) {
+      EXPECT_EQ(mesh.beams[i].nodes[0], at);
+      at = mesh.beams[i].nodes[1];
+    }
+    EXPECT_EQ(at, last);
+  }
+}
+
+TEST(Subdivision, FollowsOverridesOfGroups) {
+  auto options = parts(2);
+  options.group_subdivisions = {{"tie", 5}, {"mast", 1}};
+  const auto mesh = subdivide(two_facets(), options);
+  EXPECT_EQ(mesh.select("tie").cables.size(), 5u);
+  EXPECT_EQ(mesh.select("mast").beams.size(), 1u);
+  EXPECT_EQ(mesh.select("ridge").cables.size(), 2u);
+}
+
+TEST(Subdivision, RefusesAnOverrideThatWouldTearALineFromTheCloth) {
+  auto options = parts(2);
+  options.group_subdivisions = {{"ridge", 3}};
+  const auto message = message_of<ModelError>([&] { subdivide(two_facets(), options); });
+  EXPECT_TRUE(mentions(message, "group \"ridge\" lies on facet sides and must have their 2 parts, not 3"));
+  options.group_subdivisions = {{"ridge", 2}};
+  EXPECT_NO_THROW(subdivide(two_facets(), options));
+}
+
+TEST(Subdivision, RefusesWhatCannotBe) {
+  EXPECT_TRUE(mentions(message_of<ModelError>([] { subdivide(two_facets(), parts(0)); }), "1 or more, is 0"));
+  EXPECT_TRUE(mentions(message_of<ModelError>([] { subdivide(two_facets(), parts(3, FacetPattern::mapped)); }),
+                       "even number of subdivisions, not 3"));
+  const auto with = [](const std::string& group, int n) {
+    auto options = parts(2);
+    options.group_subdivisions[group] = n;
+    return message_of<ModelError>([&] { subdivide(two_facets(), options); });
+  };
+  EXPECT_TRUE(mentions(with("tiee", 2), "no group is called \"tiee\""));
+  EXPECT_TRUE(mentions(with("cloth", 2), "\"cloth\" are membranes"));
+  EXPECT_TRUE(mentions(with("tie", 0), "\"tie\" needs 1 or more parts"));
+}
+
+TEST(Subdivision, SharesTheUnstressedLengthOfACableOutEqually) {
+  auto options = parts(4);
+  options.group_subdivisions["tie"] = 7;
+  const auto structure = two_facets(), mesh = subdivide(structure, options);
+  std::vector<double> sum(structure.cables.size(), 0.0);
+  std::vector<int> count(structure.cables.size(), 0);
+  for (const auto& cable : mesh.cables) {
+    sum[cable.parent] += mesh.unstressed_length(cable);
+    ++count[cable.parent];
+  }
+  for (const auto& cable : mesh.cables)
+    EXPECT_NEAR(mesh.unstressed_length(cable) * count[cable.parent] / sum[cable.parent], 1, 2e-15);
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const double whole = structure.unstressed_length(structure.cables[i]);
+    EXPECT_NEAR(sum[i], whole, 1e-15 * whole) << "a few roundings of the nodes' coordinates";
+  }
+}
+
+TEST(Subdivision, LeavesTheMassAsItIs) {
+  const auto structure = two_facets(), mesh = subdivide(structure, parts(4, FacetPattern::mapped));
+  for (const auto& [name, mass] : mass_by_group(structure)) EXPECT_NEAR(mass_by_group(mesh).at(name), mass, 1e-14 * mass);
+}
+
+TEST(Subdivision, KeepsTheNodesOfTheStructureInTheirPlaces) {
+  const auto structure = two_facets(), mesh = subdivide(structure, parts(4));
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i) EXPECT_EQ(mesh.nodes[i], structure.nodes[i]);
+}
+
+TEST(Subdivision, LetsSelectionsFollowTheirElements) {
+  const auto mesh = subdivide(two_facets(), parts(2));
+  const auto everything = mesh.select("everything");
+  EXPECT_EQ(everything.membranes.size(), mesh.membranes.size());
+  EXPECT_EQ(everything.cables.size(), mesh.cables.size());
+  EXPECT_EQ(everything.beams.size(), mesh.beams.size());
+  EXPECT_EQ(mesh.select("anchors").nodes, (std::vector<int>{3, 4}));
+}
+
+TEST(Subdivision, LetsSupportsFollowTheElementsTheyAreOn) {
+  auto structure = two_facets();
+  structure.supports.push_back({"rail", {"ridge"}, {1, 2}, {true, true, true, false, false, false}});
+  const auto mesh = subdivide(structure, parts(4));
+  EXPECT_EQ(mesh.supports[0].nodes, (std::vector<int>{3, 4}));
+  EXPECT_EQ(mesh.supports[1].nodes, mesh.select("ridge").nodes);
+  EXPECT_EQ(mesh.supports[1].nodes.size(), 5u);
+}
+
+TEST(Subdivision, LeavesASupportOnExplicitNodesWhereItIs) {
+  auto structure = two_facets();
+  structure.supports[0].on.clear();
+  const auto mesh = subdivide(structure, parts(4));
+  EXPECT_EQ(mesh.supports[0].nodes, (std::vector<int>{3, 4}));
+}
+
+TEST(Subdivision, LeavesLoadsOnTheNodesOfTheStructure) {
+  auto structure = two_facets();
+  structure.loads.push_back({"pull", {1, 2}, {0, 0, -5}, {0, 0, 0}});
+  EXPECT_EQ(subdivide(structure, parts(4)).loads[0].nodes, (std::vector<int>{1, 2}));
+}
+
+TEST(Subdivision, IntoOnePartIsTheStructureItself) {
+  const auto structure = two_facets(), mesh = subdivide(structure, parts(1));
+  EXPECT_EQ(mesh.nodes.size(), structure.nodes.size());
+  for (std::size_t i = 0; i < structure.membranes.size(); ++i) {
+    EXPECT_EQ(mesh.membranes[i].nodes, structure.membranes[i].nodes);
+    EXPECT_LT((mesh.membranes[i].prestress - structure.membranes[i].prestress).norm(), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace tautline::model

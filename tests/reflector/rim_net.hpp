@@ -1,0 +1,53 @@
+#pragma once
+/// The rim reflector of Belov (2021) and its front net, for the tests of this folder.
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <tautline/formfinding/force_density.hpp>
+#include <tautline/reflector/perimeter_truss.hpp>
+#include <vector>
+
+namespace tautline::reflector {
+
+inline PerimeterTrussOptions rim_options(int rings = 10) {
+  PerimeterTrussOptions options;
+  options.aperture = 12;
+  options.focal_length = 8;
+  options.clearance = 1.125;
+  options.rings = rings;
+  options.rim_height = 0.98;
+  options.struts = 30;
+  options.gap = 0.02;
+  return options;
+}
+
+/// The first group of cables, the front net, with the rim nodes fixed.
+inline formfinding::Net front_net(const model::Model& model) {
+  formfinding::Net net;
+  const std::size_t n_nodes = model.nodes.size() / 2;
+  net.nodes.assign(model.nodes.begin(), model.nodes.begin() + n_nodes);
+  net.fixed.assign(n_nodes, false);
+  for (const int node : model.selections.at("front_rim_nodes").nodes) net.fixed[node] = true;
+  for (const auto& cable : model.cables)
+    if (model.groups[cable.group].name == "front_net") net.branches.push_back(cable.nodes);
+  return net;
+}
+
+/// Numbers of a comma-separated table without its header and without columns that are not numbers.
+inline std::vector<std::vector<double>> read_table(const std::string& name) {
+  std::ifstream file(std::string(TAUTLINE_SOURCE_DIR) + "/tests/reflector/data/" + name);
+  if (!file) throw std::runtime_error("cannot read " + name);
+  std::vector<std::vector<double>> rows;
+  std::string line, cell;
+  std::getline(file, line);
+  while (std::getline(file, line)) {
+    std::istringstream cells(line);
+    rows.emplace_back();
+    while (std::getline(cells, cell, ',')) rows.back().push_back(std::stod(cell));
+  }
+  return rows;
+}
+
+}  // namespace tautline::reflector

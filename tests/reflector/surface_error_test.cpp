@@ -1,0 +1,231 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+#include <reflector/rim_net.hpp>
+#include <tautline/core/error.hpp>
+#include <tautline/reflector/surface_error.hpp>
+
+namespace tautline::reflector {
+namespace {
+
+/// Hexagon of equilateral facets (projected side `s`), nodes at height(x, y).
+SurfaceSample hexagon(int rings, double s, const std::function<double(double, double)>& height) {
+  SurfaceSample sample;
+  std::map<std::array<int, 2>, int> number;
+  for (int i = -rings; i <= rings; ++i) {
+    for (int j = -rings; j <= rings; ++j) {
+      if (std::abs(i + j) > rings) continue;
+      const double x = s * (i + 0.5 * j), y = s * std::sqrt(0.75) * j;
+      number[{i, j}] = static_cast<int>(sample.positions.size());
+      sample.surface_nodes.push_back(number[{i, j}]);
+      sample.positions.emplace_back(x, y, height(x, y));
+    }
+  }
+  const auto add = [&](std::array<int, 2> a, std::array<int, 2> b, std::array<int, 2> c) {
+    if (number.count(a) && number.count(b) && number.count(c))
+      sample.triangles.push_back({number[a], number[b], number[c]});
+  };
+  for (int i = -rings; i <= rings; ++i) {
+    for (int j = -rings; j <= rings; ++j) {
+      add({i, j}, {i + 1, j}, {i, j + 1});
+      add({i + 1, j}, {i + 1, j + 1}, {i, j + 1});
+    }
+  }
+  sample.net_nodes = sample.surface_nodes;
+  return sample;
+}
+
+/// Every facet cut into n^2 flat ones by equally spaced points on its sides.
+SurfaceSample subdivided(const Points& nodes, const model::Model& model, int n) {
+  SurfaceSample sample;
+  std::map<std::array<long, 3>, int> number;
+  const auto add = [&](const Vec3& point) {
+    const std::array<long, 3> key{std::lround(point.x() * 1e8), std::lround(point.y() * 1e8),
+                                  std::lround(point.z() * 1e8)};
+    const auto [place, is_new] = number.try_emplace(key, static_cast<int>(sample.positions.size()));
+    if (is_new) {
+      sample.positions.push_back(point);
+      sample.surface_nodes.push_back(place->second);
+    }
+    return place->second;
+  };
+  for (const auto& membrane : model.membranes) {
+    const auto& [a, b, c] = membrane.nodes;
+    const auto at = [&](int i, int j) {
+      return add((nodes[a] * (n - i - j) + nodes[b] * i + nodes[c] * j) / n);
+    };
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; i + j < n; ++j) {
+        sample.triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+        if (i + j + 1 < n) sample.triangles.push_back({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+      }
+    }
+  }
+  return sample;
+}
+
+std::function<double(double, double)> on(const Paraboloid& surface) {
+  return [&surface](double x, double y) { return surface.height(x, y); };
+}
+
+TEST(SurfaceError, OfFlatFacetsHasTheClosedForm) {
+  // Nodes on z = r^2/4f, equilateral facets of projected side s: the error is s^2 (l1 l2 + l2 l3 + l3 l1) /
+  // 4f, its mean s^2/16f, its rms about the mean s^2/(16 sqrt(15) f). A degree-4 rule is exact; what remains
+  // is rounding.
+  const double f = 6, s = 0.75;
+  const Paraboloid dish(12, f, -6);
+  const SurfaceError error = measure_surface(dish, hexagon(8, s, on(dish)));
+  EXPECT_NEAR(error.rms_area_weighted, 0.0161374306 * s * s / f, 1e-10 * s * s);
+  EXPECT_NEAR(error.rms_area_weighted_direct, s * s / (4 * std::sqrt(15.0) * f), 1e-10 * s * s);
+  EXPECT_NEAR(error.rms_nodes, 0, 1e-15);
+  EXPECT_NEAR(error.rms, 0, 1e-15);
+}
+
+TEST(SurfaceError, UniformShiftIsAllMeanShift) {
+  const Paraboloid dish(12, 8, 1.125);
+  const double shift = 0.0037;
+  const SurfaceError error =
+      measure_surface(dish, hexagon(8, 0.7, [&](double x, double y) { return dish.height(x, y) + shift; }));
+  EXPECT_NEAR(error.mean_shift, shift, 1e-15);
+  EXPECT_NEAR(error.rms_direct, shift, 1e-15);
+  EXPECT_NEAR(error.rms, 0, 1e-15);
+  EXPECT_EQ(error.samples, 217);
+  EXPECT_NEAR(deviation(dish, {1, 2, dish.height(1, 2) - 0.5}), -0.5, 1e-15);
+}
+
+/// Facets far smaller than the motions, so that faceting (s^2/16 sqrt(15) f) is below the tolerances.
+SurfaceSample fine_exact(const Paraboloid& surface) {
+  return hexagon(50, 0.11, on(surface));
+}
+
+TEST(SurfaceError, BestFitUndoesRigidMotionAndRefocusing) {
+  const Mat3 turn = Eigen::AngleAxisd(0.004, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
+  for (const double clearance : {1.125, -6.0}) {
+    const double f = 8.03;
+    SurfaceSample sample = fine_exact(Paraboloid(12, f, clearance));
+    for (Vec3& point : sample.positions) point = turn * point + Vec3(0.01, -0.02, 0.03);
+    const SurfaceError error = measure_surface(Paraboloid(12, 8, clearance), sample);
+    const double faceting = 0.0161374306 * 0.11 * 0.11 / 8;
+    EXPECT_GT(error.rms_area_weighted, 0.005);
+    EXPECT_LT(error.rms_best_fit, 1.5 * faceting);  // facets are a little larger where the dish is steep
+    EXPECT_NEAR(error.best_fit_focal_length, f, 1e-3 * 0.03);
+  }
+}
+
+TEST(SurfaceError, BestFitIsNeverWorseThanTheAxialShift) {
+  const Paraboloid dish(12, 8, 1.125);
+  const SurfaceError error =
+      measure_surface(dish, hexagon(8, 0.7, [&](double x, double y) {
+                        return dish.height(x, y) + 0.002 * std::sin(3 * x) * std::cos(2 * y);
+                      }));
+  EXPECT_LT(error.rms_best_fit, error.rms_area_weighted);
+  EXPECT_GT(error.rms_best_fit, 0.5 * error.rms_area_weighted);
+}
+
+TEST(SurfaceError, HalfPathErrorOfAnAxialWaveIsSmallerTowardsTheRim) {
+  // delta = e_z / (1 + (r/2f)^2). With e_z = (1 + (r/2f)^2)(c + a x) the half path error is c + a x: over a
+  // hexagon of circumradius R its rms about the mean is a R sqrt(5/24) (second moment of a regular hexagon).
+  const double f = 6, a = 1e-3, R = 5;
+  const Paraboloid dish(12, f, -6);
+  const int rings = 80;
+  const SurfaceError error =
+      measure_surface(dish, hexagon(rings, R / rings, [&](double x, double y) {
+                        const double r_squared = x * x + y * y;
+                        return r_squared / (4 * f) + (1 + r_squared / (4 * f * f)) * (0.02 + a * x);
+                      }));
+  // The measure weighs by the area of the dish, not of its projection: sqrt(1 + (r/2f)^2) favours the rim by
+  // up to 8 %.
+  EXPECT_NEAR(error.rms_half_path, a * R * std::sqrt(5.0 / 24), 0.03 * a * R * std::sqrt(5.0 / 24));
+  EXPECT_GT(error.rms_area_weighted, 1.05 * error.rms_half_path);
+}
+
+TEST(SurfaceError, HalfPathErrorIsHalfTheChangeOfThePath) {
+  // The ray from the aperture plane down the axis to a point and on to the focus: moving the point along the
+  // axis by e changes the length by -e (1 + cos) with cos = (f - z)/(f + z) on the surface. A shift of the
+  // whole offset dish along the parent's axis checks the frame too.
+  const Paraboloid dish(12, 8, 1.125);
+  SurfaceSample sample = hexagon(40, 0.13, on(dish));
+  const double e = 0.02;  // large against the faceting, s^2/(16 sqrt(15) f) = 0.03 mm
+  double mean = 0, square = 0;
+  for (Vec3& point : sample.positions) {
+    const Vec3 parent = dish.to_parent(point);
+    const double half_path = e * (1 + (8 - parent.z()) / (8 + parent.z())) / 2;
+    mean += half_path / sample.positions.size();
+    square += half_path * half_path / sample.positions.size();
+    point += e * dish.axis();
+  }
+  // Nodes here, areas there: they differ by the edge nodes, of the order of one ring in forty.
+  EXPECT_NEAR(measure_surface(dish, sample).rms_half_path, std::sqrt(square - mean * mean),
+              0.05 * std::sqrt(square - mean * mean));
+}
+
+TEST(SurfaceError, AreaMeasuresDoNotDependOnTheMeshAtTheCircle) {
+  const Paraboloid dish(12, 8, -6);
+  const auto wave = [&](double x, double y) { return dish.height(x, y) + 1e-2 * x; };
+  for (const int rings : {12, 60}) {
+    SurfaceSample sample = hexagon(rings, 6.0 / rings, wave);
+    sample.radius = 5;
+    // Exact: mean 0 by symmetry, and over the disc of radius R, weighted by sqrt(1 + (r/2f)^2) with f = 8,
+    // the mean square of x is int r^3 w dr / (2 int r w dr).
+    double above = 0, below = 0;
+    for (double r = 0.0005; r < 5; r += 0.001) {
+      const double w = std::sqrt(1 + r * r / 256);
+      above += r * r * r * w;
+      below += 2 * r * w;
+    }
+    const double exact = 1e-2 * std::sqrt(above / below);
+    EXPECT_NEAR(measure_surface(dish, sample).rms_area_weighted, exact, 1e-3 * exact);
+  }
+}
+
+TEST(SurfaceError, OfTheFormFoundRimNetIsTheFacetingOfIndependentWork) {
+  // Nodal rms of flat facets inside r = 5 m, from an independent program on its own form-found nodes: 0.966
+  // and 0.847 mm for facets cut into 4^2 and 8^2.
+  const model::Model model = make_perimeter_truss(rim_options());
+  const auto net = front_net(model);
+  const Paraboloid surface = make_paraboloid(rim_options());
+  const auto form = find_tensions(net, VecX::Constant(net.branches.size(), 10), &surface, {});
+  ASSERT_TRUE(form.converged);
+  double area_weighted = 0;
+  for (const auto& [n, expected] : {std::pair{4, 0.966e-3}, {8, 0.847e-3}}) {
+    SurfaceSample sample = subdivided(form.nodes, model, n);
+    sample.radius = 5;
+    const SurfaceError error = measure_surface(surface, sample);
+    EXPECT_NEAR(error.rms, expected, 0.005e-3) << n;
+    if (area_weighted > 0) {
+      EXPECT_NEAR(error.rms_area_weighted, area_weighted, 1e-3 * area_weighted);
+    }
+    area_weighted = error.rms_area_weighted;
+  }
+}
+
+TEST(SurfaceError, GainLossIsThatOfRuze) {
+  // A surface whose nodal rms is lambda/50, /30, /20: -(4 pi / n)^2 10/ln(10) dB = -0.2743, -0.762, -1.715.
+  const Paraboloid dish(12, 6, -6);
+  const double frequency = 10e9, wavelength = 299792458 / frequency;
+  for (const auto& [part, loss, digits] :
+       {std::array{50.0, -0.2743, 5e-5}, {30.0, -0.762, 5e-4}, {20.0, -1.715, 5e-4}}) {
+    SurfaceSample sample = hexagon(3, 1, on(dish));
+    for (std::size_t i = 0; i + 1 < sample.positions.size(); i += 2) {
+      sample.positions[i].z() += wavelength / part;
+      sample.positions[i + 1].z() -= wavelength / part;
+    }
+    sample.positions.back().z() = 0;
+    sample.surface_nodes.pop_back();  // an even number, so that the mean is zero
+    sample.frequency = frequency;
+    EXPECT_NEAR(measure_surface(dish, sample).gain_loss_db, loss, digits);
+  }
+}
+
+TEST(SurfaceError, NothingInsideTheRadiusIsAnError) {
+  const Paraboloid dish(12, 6, -6);
+  SurfaceSample sample = hexagon(2, 1, on(dish));
+  for (Vec3& point : sample.positions) point.x() += 4;
+  sample.radius = 0.5;
+  EXPECT_THROW(measure_surface(dish, sample), ModelError);
+}
+
+}  // namespace
+}  // namespace tautline::reflector
