@@ -1,9 +1,9 @@
 #pragma once
 // Helpers for tests of error messages.
 
-#include <string>
-
 #include <gtest/gtest.h>
+
+#include <string>
 
 namespace tautline::testing_messages {
 

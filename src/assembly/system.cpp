@@ -104,8 +104,8 @@ OutOfBalance System::begin_stage(const Boundary& boundary) {
   hold(boundary.supports);
   start_force_ = internal_forces();
   end_force_ = dead_loads(boundary);
-  start_strain_ = end_strain_;
-  if (wanted_strain_) end_strain_ = std::move(*wanted_strain_);
+  for (std::size_t i = 0; i < model_.cables.size(); ++i) start_strain_[i] = model_.cables[i].initial_strain;
+  end_strain_ = wanted_strain_ ? std::move(*wanted_strain_) : start_strain_;
   wanted_strain_.reset();
   OutOfBalance result;
   for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
@@ -307,7 +307,9 @@ analysis::ResidualNorms System::norms(const la::Vector& f) const {
   }
   for (double& sum : sums) sum = std::sqrt(la::sum_over_ranks(sum));
   // Where nothing bends yet there is no moment to compare with: force times size stands in, far below any real moment.
-  return {sums[0], sums[1], sums[2], std::max(sums[3], 1e-3 * sums[2] * size_)};
+  // Where moments alone act there is no force to compare with: moment over size stands in, below any shear force that
+  // makes such moments.
+  return {sums[0], sums[1], std::max(sums[2], sums[3] / size_), std::max(sums[3], 1e-3 * sums[2] * size_)};
 }
 
 double System::relative_size(const la::Vector& increment) const {

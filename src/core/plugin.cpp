@@ -1,11 +1,9 @@
-#include <tautline/core/plugin.hpp>
-
-#include <filesystem>
-
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <tautline/core/error.hpp>
+#include <tautline/core/plugin.hpp>
 
 namespace tautline {
 
@@ -21,8 +19,9 @@ std::string find_plugin(const std::string& file, const std::string& remedy) {
     const fs::path candidate = (here / folder / file).lexically_normal();
     if (fs::exists(candidate, error)) return candidate.string();
   }
-  throw LibraryError(fmt::format("the plugin {} is not beside {} (in plugins/, ../plugins/ or ../lib/tautline/)\n  {}", file,
-                                 here.string(), remedy));
+  throw LibraryError(
+      fmt::format("the plugin {} is not beside {} (in plugins/, ../plugins/ or ../lib/tautline/)\n  {}", file,
+                  here.string(), remedy));
 }
 
 std::string loader_message() {
@@ -36,10 +35,12 @@ void* load_plugin_symbol(const std::string& file, const std::string& symbol, con
   const std::string path = find_plugin(file, remedy);
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr)
-    throw LibraryError(fmt::format("the plugin {} cannot be loaded: {}\n  {}", file, loader_message(), remedy));
+    throw LibraryError(
+        fmt::format("the plugin {} cannot be loaded: {}\n  {}", file, loader_message(), remedy));
   void* address = dlsym(library, symbol.c_str());
   if (address == nullptr)
-    throw LibraryError(fmt::format("the plugin {} lacks {}: build it together with the program", path, symbol));
+    throw LibraryError(
+        fmt::format("the plugin {} lacks {}: build it together with the program", path, symbol));
   return address;
 }
 

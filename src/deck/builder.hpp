@@ -1,21 +1,21 @@
 #pragma once
 /// @file
-/// Declares blocks of keys bound to the members of an options struct. Types and defaults are taken from the struct.
+/// Declares blocks of keys bound to the members of an options struct. Types and defaults are taken from the
+/// struct.
 
 #include <concepts>
+#include <deck/keyword.hpp>
+#include <deck/reader.hpp>
+#include <deck/scalars.hpp>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <tautline/core/types.hpp>
 #include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
-
-#include <deck/keyword.hpp>
-#include <deck/reader.hpp>
-#include <deck/scalars.hpp>
-#include <tautline/core/types.hpp>
 
 namespace tautline::deck {
 
@@ -35,41 +35,56 @@ struct Binding;
 template <>
 struct Binding<double> {
   static constexpr Type type = Type::number;
-  static auto read(Reader& reader, const Keyword& keyword, const Node& node) { return reader.number(keyword, node); }
-  static std::string text(double value) { return value == value && value - value == 0 ? format_number(value) : ""; }
+  static auto read(Reader& reader, const Keyword& keyword, const Node& node) {
+    return reader.number(keyword, node);
+  }
+  static std::string text(double value) {
+    return value == value && value - value == 0 ? format_number(value) : "";
+  }
 };
 template <>
 struct Binding<int> {
   static constexpr Type type = Type::integer;
-  static auto read(Reader& reader, const Keyword& keyword, const Node& node) { return reader.integer(keyword, node); }
+  static auto read(Reader& reader, const Keyword& keyword, const Node& node) {
+    return reader.integer(keyword, node);
+  }
   static std::string text(int value) { return std::to_string(value); }
 };
 template <>
 struct Binding<bool> {
   static constexpr Type type = Type::boolean;
-  static auto read(Reader& reader, const Keyword& keyword, const Node& node) { return reader.boolean(keyword, node); }
+  static auto read(Reader& reader, const Keyword& keyword, const Node& node) {
+    return reader.boolean(keyword, node);
+  }
   static std::string text(bool value) { return value ? "true" : "false"; }
 };
 template <>
 struct Binding<std::string> {
   static constexpr Type type = Type::text;
-  static auto read(Reader& reader, const Keyword& keyword, const Node& node) { return reader.text(keyword, node); }
+  static auto read(Reader& reader, const Keyword& keyword, const Node& node) {
+    return reader.text(keyword, node);
+  }
   static std::string text(const std::string& value) { return value; }
 };
 template <>
 struct Binding<std::vector<std::string>> {
   static constexpr Type type = Type::names;
-  static auto read(Reader& reader, const Keyword& keyword, const Node& node) { return reader.names(keyword, node); }
+  static auto read(Reader& reader, const Keyword& keyword, const Node& node) {
+    return reader.names(keyword, node);
+  }
   static std::string text(const std::vector<std::string>&) { return {}; }
 };
 template <>
 struct Binding<Vec3> {
   static constexpr Type type = Type::vector;
-  static auto read(Reader& reader, const Keyword& keyword, const Node& node) { return reader.vector(keyword, node); }
+  static auto read(Reader& reader, const Keyword& keyword, const Node& node) {
+    return reader.vector(keyword, node);
+  }
   static std::string text(const Vec3&) { return {}; }
 };
 
-/// The part of the owner that holds the options: the owner itself, an alternative of a variant, or of its `options`.
+/// The part of the owner that holds the options: the owner itself, an alternative of a variant, or of its
+/// `options`.
 template <class Options, class Owner>
 Options& part_of(Owner& owner) {
   if constexpr (std::same_as<Options, Owner>)
@@ -88,11 +103,14 @@ class BlockBuilder {
     block_.kind = std::move(kind);
     block_.sentence = std::move(sentence);
     block_.begin = [](void* owner) { begin(*static_cast<Owner*>(owner)); };
-    if constexpr (requires(Owner& owner) { owner.where; })
-      block_.place = [](void* owner, const SourceLocation& where) { static_cast<Owner*>(owner)->where = where; };
+    if constexpr (requires(Owner & owner) { owner.where; })
+      block_.place = [](void* owner, const SourceLocation& where) {
+        static_cast<Owner*>(owner)->where = where;
+      };
   }
 
-  /// A key with one value. `access` is a member pointer or a function returning a reference, of the options or the owner.
+  /// A key with one value. `access` is a member pointer or a function returning a reference, of the options
+  /// or the owner.
   template <class Access>
   Keyword& key(std::string name, Access access) {
     using Member = std::remove_cvref_t<decltype(reach(access, std::declval<Owner&>()))>;
@@ -100,9 +118,11 @@ class BlockBuilder {
     Keyword& keyword = add(std::move(name), Binding<Value>::type);
     Owner defaults{};
     begin(defaults);
-    if constexpr (std::same_as<Member, Value>) keyword.fallback = Binding<Value>::text(reach(access, defaults));
+    if constexpr (std::same_as<Member, Value>)
+      keyword.fallback = Binding<Value>::text(reach(access, defaults));
     keyword.read = [access](Reader& reader, const Keyword& self, Node& node, void* owner) {
-      if (auto value = Binding<Value>::read(reader, self, node)) reach(access, *static_cast<Owner*>(owner)) = *value;
+      if (auto value = Binding<Value>::read(reader, self, node))
+        reach(access, *static_cast<Owner*>(owner)) = *value;
     };
     return keyword;
   }

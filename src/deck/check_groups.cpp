@@ -1,7 +1,6 @@
-#include <algorithm>
-
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <deck/cross_checks.hpp>
 #include <deck/keywords.hpp>
 #include <tautline/core/text.hpp>
@@ -43,20 +42,23 @@ class GroupCheck {
   void check_defined(const Entry& entry) {
     if (names_.open() || names_.defines(entry.key)) return;
     const bool reflector = deck_.reflector.has_value();
-    reader_.complain(entry.place, fmt::format("no elements belong to group \"{}\"", entry.key), "in groups",
-                     fmt::format("groups of the {}: {}", reflector ? "reflector" : "model", join(names_.element_groups())),
-                     did_you_mean(entry.key, names_.element_groups()));
+    reader_.complain(
+        entry.place, fmt::format("no elements belong to group \"{}\"", entry.key), "in groups",
+        fmt::format("groups of the {}: {}", reflector ? "reflector" : "model", join(names_.element_groups())),
+        did_you_mean(entry.key, names_.element_groups()));
   }
 
   void check_node_set(const Entry& entry) {
     const Node* nodes = entry.value.find("nodes");
     if (nodes == nullptr) return;
     if (names_.defines(entry.key))
-      reader_.complain(entry.place, fmt::format("\"{}\" is a group of elements, not a set of nodes", entry.key), "in groups",
-                       "expected \"section\"");
+      reader_.complain(entry.place,
+                       fmt::format("\"{}\" is a group of elements, not a set of nodes", entry.key),
+                       "in groups", "expected \"section\"");
     if (root_.find("reflector") != nullptr || root_.at({"model", "mesh"}) != nullptr)
-      reader_.complain(nodes->label, "\"nodes\" needs nodes with names", context(entry.key),
-                       "expected a model with inline nodes; a reflector and a mesh file bring their own groups");
+      reader_.complain(
+          nodes->label, "\"nodes\" needs nodes with names", context(entry.key),
+          "expected a model with inline nodes; a reflector and a mesh file bring their own groups");
   }
 
   /// The section fits what the group is made of, the other keys fit the section.
@@ -66,16 +68,20 @@ class GroupCheck {
     const auto needed = names_.required_member(entry.key);
     if (needed && *needed != *member) {
       const Node& section = *entry.value.find("section");
-      reader_.complain(section.place, fmt::format("section \"{}\" is for {}, but group \"{}\" is made of {}", section.text,
-                                                  to_string(*member), entry.key, to_string(*needed)),
+      reader_.complain(section.place,
+                       fmt::format("section \"{}\" is for {}, but group \"{}\" is made of {}", section.text,
+                                   to_string(*member), entry.key, to_string(*needed)),
                        context(entry.key));
     }
     for (const auto& [key, place, value] : entry.value.entries) {
-      const Member home = key == "prestress" ? Member::membrane : key == "orientation" ? Member::beam : Member::cable;
+      const Member home = key == "prestress"     ? Member::membrane
+                          : key == "orientation" ? Member::beam
+                                                 : Member::cable;
       if (key != "prestress" && key != "orientation" && !contains(initial_states(), key)) continue;
       if (home == *member) continue;
-      reader_.complain(place, fmt::format("\"{}\" is for {}, but group \"{}\" is made of {}", key, to_string(home), entry.key,
-                                          to_string(*member)),
+      reader_.complain(place,
+                       fmt::format("\"{}\" is for {}, but group \"{}\" is made of {}", key, to_string(home),
+                                   entry.key, to_string(*member)),
                        context(entry.key));
     }
   }
@@ -92,10 +98,11 @@ class GroupCheck {
     const std::string* state = state_of(entry.value);
     const bool supplied = is_supplied(entry.key);
     if (state == nullptr && !supplied)
-      reader_.complain(entry.place, fmt::format("cable group \"{}\" has no initial state", entry.key), "in groups",
-                       "expected exactly one of: " + join(initial_states()), remedy(entry.key));
+      reader_.complain(entry.place, fmt::format("cable group \"{}\" has no initial state", entry.key),
+                       "in groups", "expected exactly one of: " + join(initial_states()), remedy(entry.key));
     if (state != nullptr && supplied && deck_.reflector)
-      reader_.complain(entry.value.find(*state)->label, fmt::format("the tension of \"{}\" follows from form_finding", entry.key),
+      reader_.complain(entry.value.find(*state)->label,
+                       fmt::format("the tension of \"{}\" follows from form_finding", entry.key),
                        context(entry.key), {}, fmt::format("leave \"{}\" out", *state));
   }
 
@@ -121,7 +128,9 @@ class GroupCheck {
     for (const auto& name : names_.element_groups())
       if (groups.find(name) == nullptr && names_.needs_section(name)) missing.push_back(name);
     if (missing.empty()) return;
-    reader_.complain(groups.label, fmt::format("no section is given for group{} \"{}\"", missing.size() > 1 ? "s" : "", join(missing, "\", \"")),
+    reader_.complain(groups.label,
+                     fmt::format("no section is given for group{} \"{}\"", missing.size() > 1 ? "s" : "",
+                                 join(missing, "\", \"")),
                      "in groups", fmt::format("expected an entry \"{}: {{section: ...}}\"", missing.front()));
   }
 
@@ -132,11 +141,14 @@ class GroupCheck {
     for (const auto& [name, place, section] : sections->entries) {
       const Node* kind = section.find("kind");
       const Node* material = section.find("material");
-      if (kind == nullptr || material == nullptr || kind->text == "cable" || section_blocks().find(kind->text) == nullptr) continue;
+      if (kind == nullptr || material == nullptr || kind->text == "cable" ||
+          section_blocks().find(kind->text) == nullptr)
+        continue;
       const Node* block = root_.at({"materials", material->text});
       if (block == nullptr || !block->is_mapping() || block->find("poisson_ratio") != nullptr) continue;
-      reader_.complain(block->label, "missing key \"poisson_ratio\"", context_text({"materials", material->text}),
-                       "expected a number in (-1, 0.5]", fmt::format("section \"{}\" (kind {}) needs it", name, kind->text));
+      reader_.complain(block->label, "missing key \"poisson_ratio\"",
+                       context_text({"materials", material->text}), "expected a number in (-1, 0.5]",
+                       fmt::format("section \"{}\" (kind {}) needs it", name, kind->text));
     }
   }
 

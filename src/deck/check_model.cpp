@@ -1,8 +1,7 @@
-#include <filesystem>
-
 #include <fmt/format.h>
 
 #include <deck/cross_checks.hpp>
+#include <filesystem>
 #include <tautline/core/text.hpp>
 
 namespace tautline::deck {
@@ -18,7 +17,9 @@ void check_arity(const Names& names, const Node& elements, Reader& reader) {
     for (const auto& element : list.items) {
       const std::size_t n = element.items.size();
       if (n == wanted || (n != 2 && n != 3)) continue;
-      reader.complain(element.place, fmt::format("an element of {} nodes in group \"{}\", which is made of {}", n, group, to_string(*member)),
+      reader.complain(element.place,
+                      fmt::format("an element of {} nodes in group \"{}\", which is made of {}", n, group,
+                                  to_string(*member)),
                       context_text({"model", "elements", group}), fmt::format("expected {} nodes", wanted));
     }
   }
@@ -32,8 +33,10 @@ void check_lengths(const Deck& deck, const Node& elements, Reader& reader) {
       for (std::size_t i = 0; i < element.items.size(); ++i)
         for (std::size_t j = 0; j < i; ++j) {
           const auto a = position.find(element.items[j].text), b = position.find(element.items[i].text);
-          if (a == position.end() || b == position.end() || a->first == b->first || a->second != b->second) continue;
-          reader.complain(element.place, fmt::format("nodes \"{}\" and \"{}\" are at the same place", a->first, b->first),
+          if (a == position.end() || b == position.end() || a->first == b->first || a->second != b->second)
+            continue;
+          reader.complain(element.place,
+                          fmt::format("nodes \"{}\" and \"{}\" are at the same place", a->first, b->first),
                           context_text({"model", "elements", group}), "expected an element with a length");
         }
 }

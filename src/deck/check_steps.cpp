@@ -1,11 +1,10 @@
-#include <algorithm>
-#include <filesystem>
-#include <set>
-
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <deck/cross_checks.hpp>
 #include <deck/keywords.hpp>
+#include <filesystem>
+#include <set>
 #include <tautline/core/text.hpp>
 
 namespace tautline::deck {
@@ -15,7 +14,8 @@ namespace {
 using namespace steps;
 
 /// Names given twice in a list of blocks.
-void check_unique(const Node* list, const std::string& what, const std::vector<std::string>& path, Reader& reader) {
+void check_unique(const Node* list, const std::string& what, const std::vector<std::string>& path,
+                  Reader& reader) {
   if (list == nullptr) return;
   std::map<std::string, int> seen;
   for (const auto& item : list->items) {
@@ -23,8 +23,8 @@ void check_unique(const Node* list, const std::string& what, const std::vector<s
     if (name == nullptr || !name->is_scalar()) continue;
     const auto [first, is_new] = seen.emplace(name->text, name->place.line);
     if (!is_new)
-      reader.complain(name->place, fmt::format("two {}s are called \"{}\"", what, name->text), context_text(path), {},
-                      fmt::format("the first stands in line {}", first->second));
+      reader.complain(name->place, fmt::format("two {}s are called \"{}\"", what, name->text),
+                      context_text(path), {}, fmt::format("the first stands in line {}", first->second));
   }
 }
 
@@ -54,7 +54,8 @@ class StepCheck {
       const Step& step = deck_.steps[i];
       if (node == nullptr || step.kind.empty()) continue;
       context_ = fmt::format("in steps.{} (\"{}\")", i, label_of(*node));
-      if (const auto* options = std::get_if<FormFindingOptions>(&step.options)) check_form_finding(*options, *node);
+      if (const auto* options = std::get_if<FormFindingOptions>(&step.options))
+        check_form_finding(*options, *node);
       if (std::holds_alternative<TuningStepOptions>(step.options)) check_tuning(*node);
       if (std::holds_alternative<EquilibriumOptions>(step.options))
         check_unique(node->find("stages"), "stage", {"steps", std::to_string(i), "stages"}, reader_);
@@ -69,10 +70,14 @@ class StepCheck {
     if (options.method != FormFindingOptions::Method::tension) return;
     for (const auto& group : net_of(options)) {
       const Node* block = root_.at({"groups", group});
-      if (block == nullptr || names_.member(group) != Member::cable || block->find("tension") != nullptr) continue;
-      reader_.complain(block->label, fmt::format("net group \"{}\" has no tension", group), context_text({"groups", group}),
-                       "expected tension: a number >= 0 [N]",
-                       fmt::format("form-finding (line {}) finds the shape for prescribed tensions; method: linear does without", node.label.line));
+      if (block == nullptr || names_.member(group) != Member::cable || block->find("tension") != nullptr)
+        continue;
+      reader_.complain(
+          block->label, fmt::format("net group \"{}\" has no tension", group),
+          context_text({"groups", group}), "expected tension: a number >= 0 [N]",
+          fmt::format(
+              "form-finding (line {}) finds the shape for prescribed tensions; method: linear does without",
+              node.label.line));
     }
   }
 
@@ -83,7 +88,8 @@ class StepCheck {
 
   void check_tuning(const Node& node) {
     if (root_.find("reflector") == nullptr)
-      reader_.complain(node.label, "a tuning step needs a reflector", context_, {}, "only a reflector has a surface to be tuned");
+      reader_.complain(node.label, "a tuning step needs a reflector", context_, {},
+                       "only a reflector has a surface to be tuned");
   }
 
   const Deck& deck_;
@@ -97,7 +103,8 @@ class StepCheck {
 
 void check_steps(Deck& deck, const Names& names, const Node& root, Reader& reader) {
   if (const Node* list = root.find("steps"); list != nullptr && list->is_sequence() && list->items.empty())
-    reader.complain(list->label, "\"steps\" is an empty list", context_text({}), "expected at least one step");
+    reader.complain(list->label, "\"steps\" is an empty list", context_text({}),
+                    "expected at least one step");
   check_unique(root.find("steps"), "step", {"steps"}, reader);
   check_unique(root.find("loads"), "load", {"loads"}, reader);
   check_unique(root.find("supports"), "support", {"supports"}, reader);

@@ -1,17 +1,17 @@
 #pragma once
 /// @file
-/// What concerns several blocks of a deck: names that must exist, groups that must fit their sections and steps.
+/// What concerns several blocks of a deck: names that must exist, groups that must fit their sections and
+/// steps.
 
+#include <deck/node.hpp>
+#include <deck/reader.hpp>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
-#include <vector>
-
-#include <deck/node.hpp>
-#include <deck/reader.hpp>
 #include <tautline/deck/deck.hpp>
 #include <tautline/model/model_options.hpp>
+#include <vector>
 
 namespace tautline::deck {
 
@@ -49,7 +49,7 @@ class Names {
   bool open_ = false;
   std::string optional_group_;
   std::vector<std::string> element_groups_;
-  std::map<std::string, std::vector<std::string>> known_;              ///< kind -> names in deck order
+  std::map<std::string, std::vector<std::string>> known_;             ///< kind -> names in deck order
   std::map<std::string, std::set<std::string, std::less<>>> lookup_;  ///< the same, for finding
 };
 

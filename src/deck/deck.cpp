@@ -1,9 +1,3 @@
-#include <tautline/deck/deck.hpp>
-
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-
 #include <fmt/format.h>
 
 #include <deck/cross_checks.hpp>
@@ -12,6 +6,10 @@
 #include <deck/reader.hpp>
 #include <deck/sha256.hpp>
 #include <deck/yaml_tree.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <tautline/deck/deck.hpp>
 
 namespace tautline::deck {
 
@@ -54,7 +52,8 @@ void complete(Deck& deck, const Node& root) {
 
 }  // namespace
 
-Deck parse_deck(const std::string& bytes, const std::string& name, const std::vector<std::string>& overrides) {
+Deck parse_deck(const std::string& bytes, const std::string& name,
+                const std::vector<std::string>& overrides) {
   const std::string text = without_byte_order_mark(bytes);
   const Source source(name, text);
   Complaints complaints;

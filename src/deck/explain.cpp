@@ -1,10 +1,9 @@
-#include <algorithm>
-#include <sstream>
-
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <deck/reader.hpp>
 #include <deck/topics.hpp>
+#include <sstream>
 #include <tautline/core/text.hpp>
 #include <tautline/deck/deck.hpp>
 
@@ -28,10 +27,13 @@ bool matches(const std::vector<std::string>& question, const std::vector<std::st
   return i == question.size();
 }
 
-std::string row(const std::string& name, const std::string& text) { return fmt::format("  {:<22} {}\n", name, text); }
+std::string row(const std::string& name, const std::string& text) {
+  return fmt::format("  {:<22} {}\n", name, text);
+}
 
 std::string heading(const Topic& topic) {
-  if (topic.keyword == nullptr) return fmt::format("{} (kind: {})\n  {}\n", topic.path, topic.block->kind, topic.block->sentence);
+  if (topic.keyword == nullptr)
+    return fmt::format("{} (kind: {})\n  {}\n", topic.path, topic.block->kind, topic.block->sentence);
   const Keyword& keyword = *topic.keyword;
   std::string text = fmt::format("{}: {}", topic.path, type_text(keyword));
   if (keyword.unit != "-") text += fmt::format(" [{}]", keyword.unit);
@@ -82,7 +84,8 @@ std::string contents() {
   diagnostic.where.file = "explain";
   diagnostic.message = fmt::format("unknown key \"{}\"", key);
   diagnostic.suggestion = did_you_mean(key, names);
-  if (diagnostic.suggestion.empty()) diagnostic.suggestion = "\"tautline explain\" lists the keys at the top of a deck";
+  if (diagnostic.suggestion.empty())
+    diagnostic.suggestion = "\"tautline explain\" lists the keys at the top of a deck";
   throw DeckError({diagnostic});
 }
 

@@ -1,9 +1,7 @@
-#include <deck/keyword.hpp>
-
-#include <cmath>
-
 #include <fmt/format.h>
 
+#include <cmath>
+#include <deck/keyword.hpp>
 #include <deck/scalars.hpp>
 #include <tautline/core/text.hpp>
 
@@ -41,7 +39,8 @@ bool Range::contains(double value) const {
 std::string Range::text() const {
   const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
   if (has_low && has_high)
-    return fmt::format("in {}{}, {}{}", low_open ? '(' : '[', format_number(low), format_number(high), high_open ? ')' : ']');
+    return fmt::format("in {}{}, {}{}", low_open ? '(' : '[', format_number(low), format_number(high),
+                       high_open ? ')' : ']');
   if (has_low) return fmt::format("{} {}", low_open ? ">" : ">=", format_number(low));
   if (has_high) return fmt::format("{} {}", high_open ? "<" : "<=", format_number(high));
   return {};
@@ -161,7 +160,8 @@ std::vector<const Block*> all_blocks() {
 std::vector<std::string> homes_of(std::string_view key, const Block* but) {
   std::vector<std::string> result;
   for (const Block* block : all_blocks())
-    if (block != but && block->find(key) != nullptr) result.push_back(block->path.empty() ? "the top level" : block->path);
+    if (block != but && block->find(key) != nullptr)
+      result.push_back(block->path.empty() ? "the top level" : block->path);
   return result;
 }
 

@@ -1,17 +1,16 @@
 #pragma once
 /// @file
-/// The keyword table: what each key of a deck is called, means and may hold. Parser, messages, `explain`, the schema and
-/// docs/deck/ are made from it.
+/// The keyword table: what each key of a deck is called, means and may hold. Parser, messages, `explain`, the
+/// schema and docs/deck/ are made from it.
 
+#include <deck/node.hpp>
 #include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
+#include <tautline/core/error.hpp>
 #include <utility>
 #include <vector>
-
-#include <deck/node.hpp>
-#include <tautline/core/error.hpp>
 
 namespace tautline::deck {
 
@@ -81,13 +80,13 @@ struct Keyword {
 
 /// Keys that stand together.
 struct Block {
-  std::string path;      ///< e.g. sections.cable, steps.mesh, reflector
-  std::string kind;      ///< value of `kind` that chooses this block; empty if there is no choice
+  std::string path;  ///< e.g. sections.cable, steps.mesh, reflector
+  std::string kind;  ///< value of `kind` that chooses this block; empty if there is no choice
   std::string sentence;
   std::vector<Keyword> keywords;
-  std::function<void(void*)> begin;                                ///< makes the owner hold this alternative
-  std::function<void(void*, const SourceLocation&)> place;     ///< tells the owner where it stands
-  std::function<void(Reader&, const Node&, void*)> check;          ///< what concerns several keys
+  std::function<void(void*)> begin;                         ///< makes the owner hold this alternative
+  std::function<void(void*, const SourceLocation&)> place;  ///< tells the owner where it stands
+  std::function<void(Reader&, const Node&, void*)> check;   ///< what concerns several keys
 
   const Keyword* find(std::string_view name) const;
   std::vector<std::string> names() const;

@@ -1,7 +1,6 @@
-#include <set>
-
 #include <deck/builder.hpp>
 #include <deck/keywords.hpp>
+#include <set>
 #include <tautline/model/model_options.hpp>
 
 namespace tautline::deck {
@@ -18,12 +17,14 @@ void read_nodes(Reader& reader, const Keyword& keyword, const Node& node, Option
   point.type = Type::vector;
   for (const auto& entry : node.entries) {
     point.name = fmt::format("node \"{}\"", entry.key);
-    if (const auto position = reader.vector(point, entry.value)) options.nodes.emplace_back(entry.key, *position);
+    if (const auto position = reader.vector(point, entry.value))
+      options.nodes.emplace_back(entry.key, *position);
   }
 }
 
 /// One element: two or three different node names.
-void read_element(Reader& reader, const Keyword& keyword, const Node& node, std::vector<std::vector<std::string>>& list) {
+void read_element(Reader& reader, const Keyword& keyword, const Node& node,
+                  std::vector<std::vector<std::string>>& list) {
   if (!reader.expect(Node::Kind::sequence, keyword, node)) return;
   std::vector<std::string> names;
   std::set<std::string> different;
@@ -53,7 +54,8 @@ void read_elements(Reader& reader, const Keyword& keyword, const Node& node, Opt
     elements.group = entry.key;
     elements.where = reader.source().where(entry.place);
     for (const auto& item : entry.value.items) read_element(reader, self, item, elements.connectivity);
-    if (elements.connectivity.empty()) reader.complain(entry.value, fmt::format("group \"{}\" has no elements", entry.key));
+    if (elements.connectivity.empty())
+      reader.complain(entry.value, fmt::format("group \"{}\" has no elements", entry.key));
     options.elements.push_back(std::move(elements));
   }
 }
@@ -65,11 +67,13 @@ void check_model(Reader& reader, const Node& node, Options& options) {
   const std::string ways = "expected either mesh, or nodes + elements";
   if (mesh != nullptr) options.mesh_where = reader.source().where(mesh->place);
   if (mesh != nullptr && (nodes != nullptr || elements != nullptr))
-    reader.complain(mesh->label, "both a mesh file and inline nodes or elements are given", reader.context(), ways);
+    reader.complain(mesh->label, "both a mesh file and inline nodes or elements are given", reader.context(),
+                    ways);
   else if (mesh == nullptr && (nodes == nullptr || elements == nullptr))
     reader.complain(node.label,
-                    nodes == nullptr && elements == nullptr ? "missing keys \"nodes\", \"elements\""
-                                                            : fmt::format("missing key \"{}\"", nodes == nullptr ? "nodes" : "elements"),
+                    nodes == nullptr && elements == nullptr
+                        ? "missing keys \"nodes\", \"elements\""
+                        : fmt::format("missing key \"{}\"", nodes == nullptr ? "nodes" : "elements"),
                     reader.context(), ways);
 }
 
@@ -79,7 +83,9 @@ Block make_model() {
   b.custom("elements", Type::elements, read_elements)
       .says("Elements of each group as lists of node names: 2 for cables and beams, 3 for membranes.");
   b.key("mesh", &Options::mesh_file)
-      .says("Instead of nodes and elements: a gmsh file (.msh), relative to the deck's folder. Its physical groups are the groups.");
+      .says(
+          "Instead of nodes and elements: a gmsh file (.msh), relative to the deck's folder. Its physical "
+          "groups are the groups.");
   b.check(check_model);
   return b.take();
 }
@@ -87,7 +93,8 @@ Block make_model() {
 }  // namespace
 
 const BlockSet& model_blocks() {
-  static const BlockSet set{"model", "A structure of named nodes and elements, or a mesh file.", {make_model()}, {}};
+  static const BlockSet set{
+      "model", "A structure of named nodes and elements, or a mesh file.", {make_model()}, {}};
   return set;
 }
 

@@ -1,5 +1,4 @@
 #include <cmath>
-
 #include <deck/builder.hpp>
 #include <deck/keywords.hpp>
 #include <tautline/core/text.hpp>
@@ -13,13 +12,17 @@ using Options = reflector::PerimeterTrussOptions;
 
 void check_dish(Reader& reader, const Node& node, Options& options) {
   const double radius = options.aperture / 2;
-  if (const Node* clearance = node.find("clearance"); clearance != nullptr && radius > 0 && options.clearance < -radius)
-    reader.complain(*clearance, fmt::format("clearance = {} lies outside the dish", format_number(options.clearance)),
-                    fmt::format("expected at least -aperture/2 = {} [m], where the parent axis is the centre of the dish",
-                                format_number(-radius)));
+  if (const Node* clearance = node.find("clearance");
+      clearance != nullptr && radius > 0 && options.clearance < -radius)
+    reader.complain(
+        *clearance, fmt::format("clearance = {} lies outside the dish", format_number(options.clearance)),
+        fmt::format("expected at least -aperture/2 = {} [m], where the parent axis is the centre of the dish",
+                    format_number(-radius)));
   if (const Node* measured = node.find("evaluation_radius");
       measured != nullptr && radius > 0 && options.evaluation_radius > radius)
-    reader.complain(*measured, fmt::format("evaluation_radius = {} is larger than the dish", format_number(options.evaluation_radius)),
+    reader.complain(*measured,
+                    fmt::format("evaluation_radius = {} is larger than the dish",
+                                format_number(options.evaluation_radius)),
                     fmt::format("expected at most aperture/2 = {} [m]", format_number(radius)));
 }
 
@@ -30,25 +33,55 @@ void check_struts(Reader& reader, const Node& node, Options& options) {
   std::vector<std::string> fitting;
   for (int n = 3; n <= rim_nodes; ++n)
     if (rim_nodes % n == 0) fitting.push_back(std::to_string(n));
-  reader.complain(*struts, fmt::format("{} struts cannot be spread evenly over {} rim nodes (6 x rings)", options.struts, rim_nodes),
+  reader.complain(*struts,
+                  fmt::format("{} struts cannot be spread evenly over {} rim nodes (6 x rings)",
+                              options.struts, rim_nodes),
                   "expected one of: " + join(fitting));
 }
 
 Block make_perimeter_truss() {
   BlockBuilder<Options> b("reflector.perimeter-truss", "perimeter-truss",
-                          "Two triangular nets joined by ties between an upper and a lower rim that struts and crossed cords hold apart.");
-  b.key("aperture", &Options::aperture).in("m").above(0).required().also_called({"diameter", "D"}).says("Diameter D of the aperture.");
-  b.key("focal_length", &Options::focal_length).in("m").above(0).required().also_called({"focus", "F", "f"}).says("Focal length F of the parent paraboloid.");
-  b.key("clearance", &Options::clearance).in("m").by_default("-aperture/2 (axisymmetric dish)").also_called({"offset"})
+                          "Two triangular nets joined by ties between an upper and a lower rim that struts "
+                          "and crossed cords hold apart.");
+  b.key("aperture", &Options::aperture)
+      .in("m")
+      .above(0)
+      .required()
+      .also_called({"diameter", "D"})
+      .says("Diameter D of the aperture.");
+  b.key("focal_length", &Options::focal_length)
+      .in("m")
+      .above(0)
+      .required()
+      .also_called({"focus", "F", "f"})
+      .says("Focal length F of the parent paraboloid.");
+  b.key("clearance", &Options::clearance)
+      .in("m")
+      .by_default("-aperture/2 (axisymmetric dish)")
+      .also_called({"offset"})
       .says("Distance from the parent axis to the near edge of the dish; at least -aperture/2.");
-  b.key("rings", &Options::rings).at_least(1).says("Rings of triangles in the net; the rim has 6 x rings nodes.");
+  b.key("rings", &Options::rings)
+      .at_least(1)
+      .says("Rings of triangles in the net; the rim has 6 x rings nodes.");
   b.key("gap", &Options::gap).in("m").at_least(0).says("Extra distance between front and rear net.");
-  b.key("rim_height", &Options::rim_height).in("m").by_default("mean height of the surface over the rim").says("Height z of the front rim's plane.");
-  b.key("struts", &Options::struts).at_least(3).by_default("3 x rings: one for each second rim node")
+  b.key("rim_height", &Options::rim_height)
+      .in("m")
+      .by_default("mean height of the surface over the rim")
+      .says("Height z of the front rim's plane.");
+  b.key("struts", &Options::struts)
+      .at_least(3)
+      .by_default("3 x rings: one for each second rim node")
       .says("Number of struts, evenly spread; a divisor of 6 x rings.");
-  b.key("held_strut", &Options::held_strut).in("degree").at_least(-360).at_most(360).says("Azimuth of the strut in the selection `held_strut`.");
+  b.key("held_strut", &Options::held_strut)
+      .in("degree")
+      .at_least(-360)
+      .at_most(360)
+      .says("Azimuth of the strut in the selection `held_strut`.");
   b.key("diagonals", &Options::diagonals).says("Crossed cords in every bay between struts.");
-  b.key("evaluation_radius", &Options::evaluation_radius).in("m").above(0).by_default("all of the cloth")
+  b.key("evaluation_radius", &Options::evaluation_radius)
+      .in("m")
+      .above(0)
+      .by_default("all of the cloth")
       .says("The surface error is taken inside this radius; at most aperture/2.");
   b.key("frequency", &Options::frequency).in("Hz").at_least(0).says("Frequency for the gain loss; 0: none.");
   b.check([](Reader& reader, const Node& node, Options& options) {
@@ -61,7 +94,8 @@ Block make_perimeter_truss() {
 }  // namespace
 
 const BlockSet& reflector_blocks() {
-  static const BlockSet set{"reflector", "A parametric reflector.", {make_perimeter_truss()}, {"umbrella", "rod-umbrella"}};
+  static const BlockSet set{
+      "reflector", "A parametric reflector.", {make_perimeter_truss()}, {"umbrella", "rod-umbrella"}};
   return set;
 }
 

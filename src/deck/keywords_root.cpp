@@ -14,18 +14,23 @@ void read_parameters(Reader& reader, const Keyword& keyword, const Node& node, D
     if (value.is_scalar())
       deck.parameters[name] = value.text;
     else
-      reader.complain(value, fmt::format("parameter \"{}\" is {}", name, value.describe()), "expected a number or a text");
+      reader.complain(value, fmt::format("parameter \"{}\" is {}", name, value.describe()),
+                      "expected a number or a text");
   }
 }
 
-void read_units(Reader& reader, const Keyword& keyword, const Node& node, Deck&) { reader.choice(keyword, node); }
+void read_units(Reader& reader, const Keyword& keyword, const Node& node, Deck&) {
+  reader.choice(keyword, node);
+}
 
 void check_structure(Reader& reader, const Node& node, Deck&) {
   const Node* reflector = node.find("reflector");
   const Node* model = node.find("model");
   if (reflector != nullptr && model != nullptr)
-    reader.complain(std::max(reflector->label.line, model->label.line) == model->label.line ? model->label : reflector->label,
-                    "both \"reflector\" and \"model\" are given", reader.context(), "expected exactly one of them");
+    reader.complain(
+        std::max(reflector->label.line, model->label.line) == model->label.line ? model->label
+                                                                                : reflector->label,
+        "both \"reflector\" and \"model\" are given", reader.context(), "expected exactly one of them");
   if (reflector == nullptr && model == nullptr)
     reader.complain(Place(), "missing key \"reflector\" or \"model\"", reader.context(),
                     "expected exactly one of them: the structure to be analysed");
@@ -34,20 +39,32 @@ void check_structure(Reader& reader, const Node& node, Deck&) {
 Block make_root() {
   BlockBuilder<Deck> b("", "", "A deck describes one structure and what is done with it.");
   b.key("title", &Deck::title).says("Title for reports.");
-  b.custom("units", Type::choice, read_units).one_of({"SI"}).by_default("SI").says("System of units; all values of a deck are SI: m, N, Pa, kg, s, Hz.");
+  b.custom("units", Type::choice, read_units)
+      .one_of({"SI"})
+      .by_default("SI")
+      .says("System of units; all values of a deck are SI: m, N, Pa, kg, s, Hz.");
   b.custom("parameters", Type::parameters, read_parameters)
-      .says("Named values. `${name}` stands for the value anywhere else in the deck (in quotes inside brackets); "
-            "`--set parameters.name=value` changes it.");
+      .says(
+          "Named values. `${name}` stands for the value anywhere else in the deck (in quotes inside "
+          "brackets); "
+          "`--set parameters.name=value` changes it.");
   b.block("reflector", &Deck::reflector, reflector_blocks()).says("A parametric reflector; or give `model`.");
-  b.block("model", &Deck::model, model_blocks()).says("A structure of named nodes or from a mesh file; or give `reflector`.");
+  b.block("model", &Deck::model, model_blocks())
+      .says("A structure of named nodes or from a mesh file; or give `reflector`.");
   b.map("materials", &Deck::materials, material_blocks()).says("Materials by name.");
-  b.map("sections", &Deck::sections, section_blocks()).required().says("Sections of cables, beams and membranes by name.");
+  b.map("sections", &Deck::sections, section_blocks())
+      .required()
+      .says("Sections of cables, beams and membranes by name.");
   b.map("groups", &Deck::groups, group_blocks())
       .required()
-      .says("Section and initial state of each group of elements, by the group's name; or named sets of nodes.");
+      .says(
+          "Section and initial state of each group of elements, by the group's name; or named sets of "
+          "nodes.");
   b.list("supports", &Deck::supports, support_blocks()).says("Fixed nodes.");
   b.list("loads", &Deck::loads, load_blocks()).says("Loads, ramped up by `equilibrium` steps.");
-  b.list("steps", &Deck::steps, step_blocks()).required().says("What is done, in order; each step goes on from the state the one before left.");
+  b.list("steps", &Deck::steps, step_blocks())
+      .required()
+      .says("What is done, in order; each step goes on from the state the one before left.");
   b.block("output", &Deck::output, output_blocks()).says("Which results are written.");
   b.block("solver", &Deck::solver, solver_blocks()).says("Newton's method in all steps.");
   b.check(check_structure);

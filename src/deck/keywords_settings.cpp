@@ -22,11 +22,19 @@ const BlockSet& solver_blocks() {
   using Options = analysis::NewtonOptions;
   static const BlockSet set = [] {
     BlockBuilder<Options> b("solver", "", "Newton's method in all steps.");
-    b.key("force_tolerance", &Options::force_tolerance).above(0).below(1).says("Residual force over reference force.");
-    b.key("increment_tolerance", &Options::increment_tolerance).above(0).below(1)
+    b.key("force_tolerance", &Options::force_tolerance)
+        .above(0)
+        .below(1)
+        .says("Residual force over reference force.");
+    b.key("increment_tolerance", &Options::increment_tolerance)
+        .above(0)
+        .below(1)
         .says("Displacement increment over the size of the structure, looked at together with the force.");
     b.key("max_iterations", &Options::max_iterations).at_least(1).says("Most iterations in one load step.");
-    b.key("min_step", &Options::min_step).above(0).at_most(1).says("Smallest part of the load in one step before giving up.");
+    b.key("min_step", &Options::min_step)
+        .above(0)
+        .at_most(1)
+        .says("Smallest part of the load in one step before giving up.");
     return BlockSet{"solver", "Newton's method.", {b.take()}, {}};
   }();
   return set;

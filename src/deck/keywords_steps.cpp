@@ -11,7 +11,9 @@ using namespace steps;
 template <class Options>
 BlockBuilder<Step, Options> step(const std::string& kind, const std::string& sentence) {
   BlockBuilder<Step, Options> b("steps." + kind, kind, sentence);
-  b.key("name", &Step::name).by_default("the kind, with a number where it repeats").says("Name for results and --set; no two steps share one.");
+  b.key("name", &Step::name)
+      .by_default("the kind, with a number where it repeats")
+      .says("Name for results and --set; no two steps share one.");
   return b;
 }
 
@@ -19,18 +21,42 @@ Block make_form_finding() {
   using Options = FormFindingOptions;
   using Jacobian = formfinding::SurfaceJacobian;
   auto b = step<Options>("form_finding", "Finds the shape of a net from its tensions or force densities.");
-  b.key("net", &Options::net).refers("cable group").by_default("front_net of a reflector, else all cable groups").says("Cable groups whose shape is found.");
-  b.key("fixed", &Options::fixed).refers("group").says("Plain models: groups or selections that stay in place besides the supports.");
-  b.choice("method", &Options::method, std::vector<std::pair<std::string, Options::Method>>{{"tension", Options::Method::tension}, {"linear", Options::Method::linear}})
+  b.key("net", &Options::net)
+      .refers("cable group")
+      .by_default("front_net of a reflector, else all cable groups")
+      .says("Cable groups whose shape is found.");
+  b.key("fixed", &Options::fixed)
+      .refers("group")
+      .says("Plain models: groups or selections that stay in place besides the supports.");
+  b.choice("method", &Options::method,
+           std::vector<std::pair<std::string, Options::Method>>{{"tension", Options::Method::tension},
+                                                                {"linear", Options::Method::linear}})
       .says("tension: for prescribed tensions; linear: for given force densities.");
-  b.choice("jacobian", [](Options& o) -> auto& { return o.solver.jacobian; },
-           std::vector<std::pair<std::string, Jacobian>>{{"consistent", Jacobian::consistent}, {"as_published", Jacobian::as_published}})
-      .says("Derivative of heights on a surface: its slope (quadratic convergence), or vertical equilibrium as published (linear).");
-  b.key("initial_force_density", [](Options& o) -> auto& { return o.solver.initial_force_density; }).in("N/m").above(0)
-      .says("Force density of every branch to start from; method linear uses it for groups without `force_density`.");
-  b.key("tolerance", [](Options& o) -> auto& { return o.solver.tolerance; }).above(0).says("Largest deviation from the tensions over the largest tension.");
-  b.key("max_iterations", [](Options& o) -> auto& { return o.solver.max_iterations; }).at_least(1).says("Most iterations.");
-  b.key("condition_number", [](Options& o) -> auto& { return o.solver.estimate_condition; }).says("Estimate the condition number of the equations.");
+  b.choice(
+       "jacobian", [](Options & o) -> auto& { return o.solver.jacobian; },
+       std::vector<std::pair<std::string, Jacobian>>{{"consistent", Jacobian::consistent},
+                                                     {"as_published", Jacobian::as_published}})
+      .says(
+          "Derivative of heights on a surface: its slope (quadratic convergence), or vertical equilibrium as "
+          "published (linear).");
+  b.key(
+       "initial_force_density", [](Options & o) -> auto& { return o.solver.initial_force_density; })
+      .in("N/m")
+      .above(0)
+      .says(
+          "Force density of every branch to start from; method linear uses it for groups without "
+          "`force_density`.");
+  b.key(
+       "tolerance", [](Options & o) -> auto& { return o.solver.tolerance; })
+      .above(0)
+      .says("Largest deviation from the tensions over the largest tension.");
+  b.key(
+       "max_iterations", [](Options & o) -> auto& { return o.solver.max_iterations; })
+      .at_least(1)
+      .says("Most iterations.");
+  b.key(
+       "condition_number", [](Options & o) -> auto& { return o.solver.estimate_condition; })
+      .says("Estimate the condition number of the equations.");
   return b.take();
 }
 
@@ -43,7 +69,8 @@ void read_counts(Reader& reader, const Keyword& keyword, const Node& node, MeshO
   for (const auto& entry : node.entries) {
     count.name = entry.key;
     reader.refer_key("line group", entry);
-    if (const auto value = reader.integer(count, entry.value)) options.subdivide.group_subdivisions[entry.key] = *value;
+    if (const auto value = reader.integer(count, entry.value))
+      options.subdivide.group_subdivisions[entry.key] = *value;
   }
 }
 
@@ -52,27 +79,39 @@ void check_mesh(Reader& reader, const Node& node, MeshOptions& options) {
   const Node* parts = node.find("subdivisions");
   if (subdivide.pattern != model::FacetPattern::mapped || subdivide.subdivisions % 2 == 0) return;
   const Node& place = parts != nullptr ? *parts : *node.find("pattern");
-  reader.complain(place, fmt::format("subdivisions = {} is odd", subdivide.subdivisions), "expected an even number for pattern mapped");
+  reader.complain(place, fmt::format("subdivisions = {} is odd", subdivide.subdivisions),
+                  "expected an even number for pattern mapped");
 }
 
 Block make_mesh() {
   using Pattern = model::FacetPattern;
   auto b = step<MeshOptions>("mesh", "Divides facets, the cables along them and beams into finite elements.");
-  b.key("subdivisions", [](MeshOptions& o) -> auto& { return o.subdivide.subdivisions; }).at_least(1)
+  b.key(
+       "subdivisions", [](MeshOptions & o) -> auto& { return o.subdivide.subdivisions; })
+      .at_least(1)
       .says("Parts of each facet side, of the cables on it and of the beams.");
-  b.choice("pattern", [](MeshOptions& o) -> auto& { return o.subdivide.pattern; },
-           std::vector<std::pair<std::string, Pattern>>{{"structured", Pattern::structured}, {"mapped", Pattern::mapped}})
-      .says("structured: similar triangles; mapped: three mapped patches around the centroid, for even subdivisions.");
-  b.custom("group_subdivisions", Type::counts, read_counts).at_least(1).says("Other numbers of parts for cable or beam groups.");
+  b.choice(
+       "pattern", [](MeshOptions & o) -> auto& { return o.subdivide.pattern; },
+       std::vector<std::pair<std::string, Pattern>>{{"structured", Pattern::structured},
+                                                    {"mapped", Pattern::mapped}})
+      .says(
+          "structured: similar triangles; mapped: three mapped patches around the centroid, for even "
+          "subdivisions.");
+  b.custom("group_subdivisions", Type::counts, read_counts)
+      .at_least(1)
+      .says("Other numbers of parts for cable or beam groups.");
   b.check(check_mesh);
   return b.take();
 }
 
 const BlockSet& stage_blocks() {
   static const BlockSet set = [] {
-    BlockBuilder<StageOptions> b("steps.equilibrium.stages", "", "One stage: the supports and `hold` are kept, all else is free.");
+    BlockBuilder<StageOptions> b("steps.equilibrium.stages", "",
+                                 "One stage: the supports and `hold` are kept, all else is free.");
     b.key("name", &StageOptions::name).by_default("stage and its number").says("Name for results.");
-    b.key("hold", &StageOptions::hold).refers("group").says("Groups or selections held besides the supports.");
+    b.key("hold", &StageOptions::hold)
+        .refers("group")
+        .says("Groups or selections held besides the supports.");
     return BlockSet{"steps.equilibrium.stages", "Stages of an equilibrium.", {b.take()}, {}};
   }();
   return set;
@@ -81,8 +120,14 @@ const BlockSet& stage_blocks() {
 Block make_equilibrium() {
   using Options = EquilibriumOptions;
   auto b = step<Options>("equilibrium", "Finds the equilibrium under the supports and loads.");
-  b.list("stages", &Options::stages, stage_blocks()).says("Stages one after the other, e.g. to release parts that were held; without it one stage with the supports only.");
-  b.key("loads", &Options::loads).refers("load").by_default("all loads of the deck").says("Loads ramped up in the last stage.");
+  b.list("stages", &Options::stages, stage_blocks())
+      .says(
+          "Stages one after the other, e.g. to release parts that were held; without it one stage with the "
+          "supports only.");
+  b.key("loads", &Options::loads)
+      .refers("load")
+      .by_default("all loads of the deck")
+      .says("Loads ramped up in the last stage.");
   b.key("reset", &Options::reset).says("Start again from the reference configuration.");
   return b.take();
 }
@@ -92,35 +137,66 @@ void check_tuning(Reader& reader, const Node& node, TuningStepOptions& options) 
   if (tuning.method == reflector::TuningMethod::rule)
     for (const char* key : {"objective", "tension_min", "tension_max"})
       if (const Node* value = node.find(key))
-        reader.complain(value->label, fmt::format("\"{}\" has no effect with method rule", key), reader.context(), {},
-                        "it belongs to method: sensitivity");
-  if (const Node* high = node.find("tension_max"); high != nullptr && tuning.tension_max <= tuning.tension_min)
-    reader.complain(*high, fmt::format("tension_max = {} is not above tension_min = {}", format_number(tuning.tension_max),
-                                       format_number(tuning.tension_min)));
+        reader.complain(value->label, fmt::format("\"{}\" has no effect with method rule", key),
+                        reader.context(), {}, "it belongs to method: sensitivity");
+  if (const Node* high = node.find("tension_max");
+      high != nullptr && tuning.tension_max <= tuning.tension_min)
+    reader.complain(*high, fmt::format("tension_max = {} is not above tension_min = {}",
+                                       format_number(tuning.tension_max), format_number(tuning.tension_min)));
 }
 
 Block make_tuning() {
   using Method = reflector::TuningMethod;
   using Objective = reflector::TuningObjective;
-  auto b = step<TuningStepOptions>("tuning", "Changes the unstressed lengths of ties until the surface is as good as it gets.");
-  b.choice("method", [](TuningStepOptions& o) -> auto& { return o.tuning.method; },
-           std::vector<std::pair<std::string, Method>>{{"rule", Method::rule}, {"sensitivity", Method::sensitivity}})
-      .says("rule: each tie shortened by the deviation of its front node; sensitivity: least squares with the influence of every tie.");
-  b.choice("objective", [](TuningStepOptions& o) -> auto& { return o.tuning.objective; },
-           std::vector<std::pair<std::string, Objective>>{{"nodes", Objective::nodes}, {"area", Objective::area}})
+  auto b = step<TuningStepOptions>(
+      "tuning", "Changes the unstressed lengths of ties until the surface is as good as it gets.");
+  b.choice(
+       "method", [](TuningStepOptions & o) -> auto& { return o.tuning.method; },
+       std::vector<std::pair<std::string, Method>>{{"rule", Method::rule},
+                                                   {"sensitivity", Method::sensitivity}})
+      .says(
+          "rule: each tie shortened by the deviation of its front node; sensitivity: least squares with the "
+          "influence of every tie.");
+  b.choice(
+       "objective", [](TuningStepOptions & o) -> auto& { return o.tuning.objective; },
+       std::vector<std::pair<std::string, Objective>>{{"nodes", Objective::nodes}, {"area", Objective::area}})
       .says("Method sensitivity: surface error over nodes or weighted by area.");
-  b.key("ties", [](TuningStepOptions& o) -> auto& { return o.tuning.ties; }).refers("cable group").says("Cable group that is tuned.");
-  b.key("max_passes", [](TuningStepOptions& o) -> auto& { return o.tuning.max_passes; }).at_least(1).says("Most passes.");
-  b.key("tolerance", [](TuningStepOptions& o) -> auto& { return o.tuning.tolerance; }).above(0).says("Stop when the error changes by less than this part of itself.");
-  b.key("tension_min", [](TuningStepOptions& o) -> auto& { return o.tuning.tension_min; }).in("N").at_least(0).says("Method sensitivity: least tension of a tie.");
-  b.key("tension_max", [](TuningStepOptions& o) -> auto& { return o.tuning.tension_max; }).in("N").above(0).by_default("no limit").says("Method sensitivity: greatest tension of a tie.");
-  b.key("max_change", [](TuningStepOptions& o) -> auto& { return o.tuning.max_change; }).in("m").above(0).by_default("no limit").says("Largest change of an unstressed length in one pass.");
+  b.key(
+       "ties", [](TuningStepOptions & o) -> auto& { return o.tuning.ties; })
+      .refers("cable group")
+      .says("Cable group that is tuned.");
+  b.key(
+       "max_passes", [](TuningStepOptions & o) -> auto& { return o.tuning.max_passes; })
+      .at_least(1)
+      .says("Most passes.");
+  b.key(
+       "tolerance", [](TuningStepOptions & o) -> auto& { return o.tuning.tolerance; })
+      .above(0)
+      .says("Stop when the error changes by less than this part of itself.");
+  b.key(
+       "tension_min", [](TuningStepOptions & o) -> auto& { return o.tuning.tension_min; })
+      .in("N")
+      .at_least(0)
+      .says("Method sensitivity: least tension of a tie.");
+  b.key(
+       "tension_max", [](TuningStepOptions & o) -> auto& { return o.tuning.tension_max; })
+      .in("N")
+      .above(0)
+      .by_default("no limit")
+      .says("Method sensitivity: greatest tension of a tie.");
+  b.key(
+       "max_change", [](TuningStepOptions & o) -> auto& { return o.tuning.max_change; })
+      .in("m")
+      .above(0)
+      .by_default("no limit")
+      .says("Largest change of an unstressed length in one pass.");
   b.check(check_tuning);
   return b.take();
 }
 
 Block make_modal() {
-  auto b = step<ModalOptions>("modal", "Natural frequencies and modes about the present state, with its prestress.");
+  auto b = step<ModalOptions>("modal",
+                              "Natural frequencies and modes about the present state, with its prestress.");
   b.key("modes", &ModalOptions::modes).at_least(1).says("Number of modes, from the lowest frequency.");
   return b.take();
 }
@@ -128,10 +204,11 @@ Block make_modal() {
 }  // namespace
 
 const BlockSet& step_blocks() {
-  static const BlockSet set{"steps",
-                            "Steps in order; `kind` says what is done.",
-                            {make_form_finding(), make_mesh(), make_equilibrium(), make_tuning(), make_modal()},
-                            {"buckling", "collapse", "rod_shaping"}};
+  static const BlockSet set{
+      "steps",
+      "Steps in order; `kind` says what is done.",
+      {make_form_finding(), make_mesh(), make_equilibrium(), make_tuning(), make_modal()},
+      {"buckling", "collapse", "rod_shaping"}};
   return set;
 }
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-
 #include <deck/builder.hpp>
 #include <deck/keywords.hpp>
 #include <tautline/core/text.hpp>
@@ -18,14 +17,18 @@ void read_fix(Reader& reader, const Keyword& keyword, const Node& node, model::S
     for (std::size_t i = 0; i < 6; ++i) options.fixed[i] = i < 3 || node.text == "all";
     return;
   }
-  if (node.is_scalar()) return reader.wrong_value(keyword, node, "is no known support", did_you_mean(node.text, {"all", "pinned"}));
+  if (node.is_scalar())
+    return reader.wrong_value(keyword, node, "is no known support",
+                              did_you_mean(node.text, {"all", "pinned"}));
   if (!reader.expect(Node::Kind::sequence, keyword, node)) return;
   if (node.items.empty()) return reader.wrong_value(keyword, node, "is an empty list");
   options.fixed.fill(false);
   for (const auto& item : node.items) {
-    const auto* found = std::find_if(directions.begin(), directions.end(), [&](const char* d) { return item.text == d; });
+    const auto* found =
+        std::find_if(directions.begin(), directions.end(), [&](const char* d) { return item.text == d; });
     if (found == directions.end())
-      reader.complain(item, fmt::format("unknown direction \"{}\"", item.text), "expected any of: x, y, z, rx, ry, rz");
+      reader.complain(item, fmt::format("unknown direction \"{}\"", item.text),
+                      "expected any of: x, y, z, rx, ry, rz");
     else
       options.fixed[static_cast<std::size_t>(found - directions.begin())] = true;
   }
@@ -41,7 +44,8 @@ Block make_support() {
   BlockBuilder<Options> b("supports", "", "Nodes that cannot move.");
   b.key("name", &Options::name).by_default("support and its number").says("Name for messages and results.");
   b.key("on", &Options::on).required().refers("group").says("Groups or selections whose nodes are fixed.");
-  b.custom("fix", Type::directions, read_fix).by_default("all")
+  b.custom("fix", Type::directions, read_fix)
+      .by_default("all")
       .says("Fixed directions: all (displacements and rotations), pinned (x, y, z), or a list.");
   b.check([](Reader& reader, const Node& node, Options&) { check_not_empty(reader, node); });
   return b.take();
@@ -55,7 +59,8 @@ void check_load(Reader& reader, const Node& node, model::LoadOptions&) {
     reader.complain(node.label, "missing key \"force\", \"moment\" or \"acceleration\"", reader.context(),
                     "expected force or moment (with on), or acceleration");
   if (nodal && node.find("on") == nullptr)
-    reader.complain(node.label, "missing key \"on\"", reader.context(), "expected the groups or selections whose nodes are loaded");
+    reader.complain(node.label, "missing key \"on\"", reader.context(),
+                    "expected the groups or selections whose nodes are loaded");
   if (acceleration != nullptr && !nodal && node.find("on") != nullptr)
     reader.complain(*node.find("on"), "\"on\" has no effect: an acceleration acts on every mass");
 }
@@ -67,7 +72,9 @@ Block make_load() {
   b.key("on", &Options::on).refers("group").says("Groups or selections whose nodes are loaded.");
   b.key("force", &Options::force).in("N").by_default("[0, 0, 0]").says("Force on each node.");
   b.key("moment", &Options::moment).in("N m").by_default("[0, 0, 0]").says("Moment on each node.");
-  b.key("acceleration", &Options::acceleration).in("m/s^2").says("Acceleration that acts on every mass, e.g. gravity [0, 0, -9.81]; needs no `on`.");
+  b.key("acceleration", &Options::acceleration)
+      .in("m/s^2")
+      .says("Acceleration that acts on every mass, e.g. gravity [0, 0, -9.81]; needs no `on`.");
   b.check(check_load);
   return b.take();
 }

@@ -1,7 +1,6 @@
-#include <algorithm>
-
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <deck/cross_checks.hpp>
 #include <deck/keywords.hpp>
 #include <tautline/core/text.hpp>
@@ -11,18 +10,22 @@ namespace tautline::deck {
 namespace {
 
 const std::map<std::string, Member>& reflector_groups() {
-  static const std::map<std::string, Member> table{
-      {"front_net", Member::cable}, {"rear_net", Member::cable}, {"ties", Member::cable},    {"diagonals", Member::cable},
-      {"front_rim", Member::beam},  {"rear_rim", Member::beam},  {"struts", Member::beam},   {"cloth", Member::membrane}};
+  static const std::map<std::string, Member> table{{"front_net", Member::cable}, {"rear_net", Member::cable},
+                                                   {"ties", Member::cable},      {"diagonals", Member::cable},
+                                                   {"front_rim", Member::beam},  {"rear_rim", Member::beam},
+                                                   {"struts", Member::beam},     {"cloth", Member::membrane}};
   return table;
 }
 
 const std::vector<std::string>& reflector_selections() {
-  static const std::vector<std::string> list{"held_strut", "front_net_nodes", "rear_net_nodes", "front_rim_nodes", "rear_rim_nodes"};
+  static const std::vector<std::string> list{"held_strut", "front_net_nodes", "rear_net_nodes",
+                                             "front_rim_nodes", "rear_rim_nodes"};
   return list;
 }
 
-bool is_strut(const std::string& name) { return name.rfind("strut_", 0) == 0 && list_index(name.substr(6)) >= 0; }
+bool is_strut(const std::string& name) {
+  return name.rfind("strut_", 0) == 0 && list_index(name.substr(6)) >= 0;
+}
 
 std::vector<std::string> keys(const Node* node) {
   std::vector<std::string> result;
@@ -53,7 +56,9 @@ Names::Names(const Deck& deck, const Node& root) : root_(root) {
   collect();
 }
 
-bool Names::defines(const std::string& group) const { return std::find(element_groups_.begin(), element_groups_.end(), group) != element_groups_.end(); }
+bool Names::defines(const std::string& group) const {
+  return std::find(element_groups_.begin(), element_groups_.end(), group) != element_groups_.end();
+}
 
 std::optional<Member> Names::required_member(const std::string& group) const {
   const auto found = reflector_groups().find(group);
@@ -74,7 +79,8 @@ void Names::collect() {
   known_["section"] = keys(root_.find("sections"));
   known_["node"] = keys(root_.at({"model", "nodes"}));
   auto& regions = known_["group"] = element_groups_;
-  if (is_reflector_) regions.insert(regions.end(), reflector_selections().begin(), reflector_selections().end());
+  if (is_reflector_)
+    regions.insert(regions.end(), reflector_selections().begin(), reflector_selections().end());
   for (const auto& name : keys(root_.find("groups"))) {
     const auto what = member(name);
     if (what == Member::cable) known_["cable group"].push_back(name);
@@ -95,7 +101,7 @@ bool Names::contains(const std::string& kind, const std::string& name) const {
 
 std::string Names::home(const std::string& kind) const {
   static const std::map<std::string, std::vector<std::string>> paths{
-      {"material", {"materials"}},  {"section", {"sections"}},  {"node", {"model", "nodes"}},
+      {"material", {"materials"}}, {"section", {"sections"}},  {"node", {"model", "nodes"}},
       {"cable group", {"groups"}}, {"line group", {"groups"}}, {"load", {"loads"}}};
   const auto path = paths.find(kind);
   const Node* node = path == paths.end() ? nullptr : root_.at(path->second);
@@ -106,7 +112,8 @@ std::string Names::home(const std::string& kind) const {
 bool Names::is_known(const std::string& kind, const std::string& name) const {
   if (contains(kind, name)) return true;
   if (kind == "group") return open_ || (is_reflector_ && is_strut(name));
-  if (kind == "node") return root_.at({"model", "nodes"}) == nullptr;  // a missing block is complained about elsewhere
+  if (kind == "node")
+    return root_.at({"model", "nodes"}) == nullptr;  // a missing block is complained about elsewhere
   if (kind == "material" || kind == "section") {
     const Node* block = root_.find(kind + "s");
     return block != nullptr && !block->is_mapping();
@@ -121,13 +128,15 @@ void check_references(const Names& names, Reader& reader) {
     if (names.is_known(reference.kind, reference.name)) continue;
     const auto known = names.known(reference.kind);
     std::string expectation = fmt::format("the deck defines no {}s", reference.kind);
-    if (!known.empty()) expectation = fmt::format("expected one of: {}{}", join(known), names.home(reference.kind));
+    if (!known.empty())
+      expectation = fmt::format("expected one of: {}{}", join(known), names.home(reference.kind));
     std::string suggestion = did_you_mean(reference.name, known);
     if (!reference.note.empty()) suggestion += (suggestion.empty() ? "" : "; ") + reference.note;
     std::string message = fmt::format("unknown {} \"{}\"", reference.kind, reference.name);
     const auto member = names.member(reference.name);
     if (member && (reference.kind == "cable group" || reference.kind == "line group"))
-      message = fmt::format("\"{}\" is no {} (it is made of {})", reference.name, reference.kind, to_string(*member));
+      message = fmt::format("\"{}\" is no {} (it is made of {})", reference.name, reference.kind,
+                            to_string(*member));
     reader.complain(reference.place, message, reference.context, expectation, suggestion);
   }
 }

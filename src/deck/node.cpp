@@ -1,6 +1,5 @@
-#include <deck/node.hpp>
-
 #include <charconv>
+#include <deck/node.hpp>
 #include <utility>
 
 namespace tautline::deck {
@@ -11,7 +10,9 @@ const Node* Node::find(std::string_view key) const {
   return nullptr;
 }
 
-Node* Node::find(std::string_view key) { return const_cast<Node*>(std::as_const(*this).find(key)); }
+Node* Node::find(std::string_view key) {
+  return const_cast<Node*>(std::as_const(*this).find(key));
+}
 
 const Node* Node::at(const std::vector<std::string>& path) const {
   const Node* node = this;

@@ -27,13 +27,13 @@ struct Node {
     broken  ///< already complained about; complaints at this node are swallowed
   };
   Kind kind = Kind::empty;
-  Place place;             ///< of the value; of the key where the value is empty
-  Place label;             ///< of the key that holds the value; of the value itself in a list
-  std::string text;        ///< scalars
-  bool quoted = false;     ///< scalars: written in quotes or as a block
-  std::string note;        ///< where the value comes from if not written here: a parameter, an anchor
-  std::vector<Node> items;      ///< sequences
-  std::vector<Entry> entries;   ///< mappings, in the order written, duplicates included
+  Place place;                 ///< of the value; of the key where the value is empty
+  Place label;                 ///< of the key that holds the value; of the value itself in a list
+  std::string text;            ///< scalars
+  bool quoted = false;         ///< scalars: written in quotes or as a block
+  std::string note;            ///< where the value comes from if not written here: a parameter, an anchor
+  std::vector<Node> items;     ///< sequences
+  std::vector<Entry> entries;  ///< mappings, in the order written, duplicates included
 
   bool is_mapping() const { return kind == Kind::mapping; }
   bool is_sequence() const { return kind == Kind::sequence; }

@@ -1,10 +1,9 @@
-#include <optional>
-
 #include <fmt/format.h>
 
 #include <deck/keyword.hpp>
 #include <deck/parameters.hpp>
 #include <deck/reader.hpp>
+#include <optional>
 #include <tautline/core/text.hpp>
 
 namespace tautline::deck {
@@ -36,7 +35,8 @@ class Override {
     while (node != nullptr) {
       Node* next = step(*node, rest);
       if (next == nullptr && rest.find('.') == std::string::npos && node->is_mapping())
-        return node == root.find("parameters") ? unknown(*node, rest) : add(*node, rest, text_.substr(equals + 1));
+        return node == root.find("parameters") ? unknown(*node, rest)
+                                               : add(*node, rest, text_.substr(equals + 1));
       if (next == nullptr) next = open_block(root, *node, rest);
       if (next == nullptr) return unknown(*node, rest);
       node = next;
@@ -58,7 +58,8 @@ class Override {
     for (auto& entry : node.entries) follow(entry.key, entry.value);
     for (std::size_t i = 0; i < node.items.size(); ++i) {
       follow(std::to_string(i), node.items[i]);
-      if (const std::string label = label_of(node.items[i]); !label.empty() && is_unique(node, label)) follow(label, node.items[i]);
+      if (const std::string label = label_of(node.items[i]); !label.empty() && is_unique(node, label))
+        follow(label, node.items[i]);
     }
     if (found != nullptr) rest.erase(0, std::min(rest.size(), length + 1));
     return found;
@@ -101,8 +102,8 @@ class Override {
 
   void set(Node& node, std::string value) {
     if (node.is_mapping() || node.is_sequence())
-      return fail(fmt::format("this is {}, which cannot be set", node.describe()), "expected the path of a single value",
-                  "below it: " + join(steps_below(node)));
+      return fail(fmt::format("this is {}, which cannot be set", node.describe()),
+                  "expected the path of a single value", "below it: " + join(steps_below(node)));
     node = Node{};
     node.kind = value.empty() ? Node::Kind::empty : Node::Kind::scalar;
     node.text = std::move(value);
@@ -112,8 +113,8 @@ class Override {
   void unknown(const Node& node, const std::string& rest) {
     const std::string word = rest.substr(0, rest.find('.'));
     const auto known = steps_below(node);
-    fail(fmt::format("the deck has no \"{}\" here", word), known.empty() ? "" : "expected one of: " + join(known),
-         did_you_mean(word, known));
+    fail(fmt::format("the deck has no \"{}\" here", word),
+         known.empty() ? "" : "expected one of: " + join(known), did_you_mean(word, known));
   }
 
   void fail(std::string message, std::string expectation, std::string suggestion) {

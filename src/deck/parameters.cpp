@@ -1,7 +1,6 @@
-#include <deck/parameters.hpp>
-
 #include <fmt/format.h>
 
+#include <deck/parameters.hpp>
 #include <deck/reader.hpp>
 #include <tautline/core/text.hpp>
 
@@ -44,7 +43,8 @@ class Substitution {
       if (value == nullptr || !value->is_scalar()) return unknown(node, name, value != nullptr);
       result += node.text.substr(from, begin - from) + value->text;
       from = end + 1;
-      node.note += fmt::format("{}${{{}}} is {} ({})", node.note.empty() ? "" : "; ", name, value->text, origin(*value));
+      node.note += fmt::format("{}${{{}}} is {} ({})", node.note.empty() ? "" : "; ", name, value->text,
+                               origin(*value));
     }
     if (from == 0) return;
     node.text = result + node.text.substr(from);
@@ -60,7 +60,8 @@ class Substitution {
       node.kind = Node::Kind::broken;
       return;
     }
-    const std::string known = names_.empty() ? "the deck declares no parameters" : "expected one of: " + join(names_);
+    const std::string known =
+        names_.empty() ? "the deck declares no parameters" : "expected one of: " + join(names_);
     fail(node, fmt::format("unknown parameter \"{}\"", name), known, did_you_mean(name, names_));
   }
 
@@ -85,7 +86,8 @@ void reject_nested(const Node* parameters, const Source& source, Complaints& com
   if (parameters == nullptr) return;
   for (const auto& entry : parameters->entries) {
     if (entry.value.text.find("${") == std::string::npos) continue;
-    Diagnostic diagnostic = source.diagnostic(entry.value.place, fmt::format("parameter \"{}\" refers to a parameter", entry.key));
+    Diagnostic diagnostic = source.diagnostic(
+        entry.value.place, fmt::format("parameter \"{}\" refers to a parameter", entry.key));
     diagnostic.context = "in parameters";
     diagnostic.expectation = "expected a number or a text";
     complaints.add(std::move(diagnostic));

@@ -2,11 +2,10 @@
 /// @file
 /// Changes to the tree before it is read: values from the command line, and `${name}` put in.
 
-#include <string>
-#include <vector>
-
 #include <deck/node.hpp>
 #include <deck/source.hpp>
+#include <string>
+#include <vector>
 
 namespace tautline::deck {
 

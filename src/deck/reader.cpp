@@ -1,10 +1,8 @@
-#include <deck/reader.hpp>
-
-#include <algorithm>
-#include <map>
-
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <deck/reader.hpp>
+#include <map>
 #include <tautline/core/text.hpp>
 
 namespace tautline::deck {
@@ -26,7 +24,9 @@ std::string label_of(const Node& node) {
 Reader::Step::Step(Reader& reader, std::string name, std::string label) : reader_(reader) {
   reader_.path_.emplace_back(std::move(name), std::move(label));
 }
-Reader::Step::~Step() { reader_.path_.pop_back(); }
+Reader::Step::~Step() {
+  reader_.path_.pop_back();
+}
 
 std::string context_text(const std::vector<std::string>& path) {
   return path.empty() ? "at the top level" : "in " + join(path, ".", path.size());
@@ -47,7 +47,8 @@ std::string Reader::context() const {
   return context_text(words) + label;
 }
 
-void Reader::complain(const Node& node, std::string message, std::string expectation, std::string suggestion) {
+void Reader::complain(const Node& node, std::string message, std::string expectation,
+                      std::string suggestion) {
   if (node.kind == Node::Kind::broken) return;
   if (!node.note.empty()) suggestion += (suggestion.empty() ? "" : "; ") + node.note;
   complain(node.place, std::move(message), context(), std::move(expectation), std::move(suggestion));
@@ -64,7 +65,8 @@ void Reader::complain(const Place& place, std::string message, std::string conte
 
 void Reader::read_block(const BlockSet& set, Node& node, void* owner) {
   if (!node.is_mapping()) {
-    complain(node, fmt::format("a block is expected here, but this is {}", node.describe()), "expected keys with values");
+    complain(node, fmt::format("a block is expected here, but this is {}", node.describe()),
+             "expected keys with values");
     return;
   }
   const Block* block = choose(set, node);
@@ -79,7 +81,8 @@ void Reader::read_block(const BlockSet& set, Node& node, void* owner) {
     if (keyword == nullptr || !seen.insert(entry.key).second) continue;
     used_.insert(keyword);
     if (entry.value.kind == Node::Kind::empty)
-      complain(entry.value, fmt::format("\"{}\" has no value", entry.key), "expected " + keyword->expectation());
+      complain(entry.value, fmt::format("\"{}\" has no value", entry.key),
+               "expected " + keyword->expectation());
     else
       keyword->read(*this, *keyword, entry.value, owner);
   }
@@ -104,7 +107,8 @@ const Block* Reader::choose(const BlockSet& set, const Node& node) {
     complain(*kind, fmt::format("kind \"{}\" is not available in this version", kind->text),
              "available: " + join(set.kinds()));
   else
-    complain(*kind, fmt::format("unknown kind \"{}\"", kind->text), known, did_you_mean(kind->text, set.kinds()));
+    complain(*kind, fmt::format("unknown kind \"{}\"", kind->text), known,
+             did_you_mean(kind->text, set.kinds()));
   return nullptr;
 }
 
@@ -161,7 +165,8 @@ void Reader::check_missing(const Block& block, const Node& node) {
     expected.push_back(fmt::format("{}: {}", keyword.name, keyword.expectation()));
   }
   if (missing.empty()) return;
-  complain(path_.empty() ? Place() : node.label, fmt::format("missing key{} {}", missing.size() > 1 ? "s" : "", quoted_list(missing)), context(),
+  complain(path_.empty() ? Place() : node.label,
+           fmt::format("missing key{} {}", missing.size() > 1 ? "s" : "", quoted_list(missing)), context(),
            "expected " + join(expected, "; "));
 }
 

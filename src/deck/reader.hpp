@@ -2,15 +2,14 @@
 /// @file
 /// Walks a located tree along the keyword table, fills options and collects complaints.
 
-#include <optional>
-#include <set>
-#include <string>
-#include <vector>
-
 #include <deck/keyword.hpp>
 #include <deck/node.hpp>
 #include <deck/source.hpp>
+#include <optional>
+#include <set>
+#include <string>
 #include <tautline/core/types.hpp>
+#include <vector>
 
 namespace tautline::deck {
 
@@ -30,13 +29,14 @@ class Reader {
   const Source& source() const { return source_; }
 
   /// Complains at a node, in the block being read.
-  void complain(const Node& node, std::string message, std::string expectation = {}, std::string suggestion = {});
+  void complain(const Node& node, std::string message, std::string expectation = {},
+                std::string suggestion = {});
   /// Complains at a key or any other place, in a block named by the caller.
   void complain(const Place& place, std::string message, std::string context, std::string expectation = {},
                 std::string suggestion = {});
 
-  /// Reads one block into `owner`, which has the type the block set was declared for. A key that is complained about but
-  /// can be guessed is renamed in the tree, so that no complaint follows from the first.
+  /// Reads one block into `owner`, which has the type the block set was declared for. A key that is
+  /// complained about but can be guessed is renamed in the tree, so that no complaint follows from the first.
   void read_block(const BlockSet& set, Node& node, void* owner);
 
   /// Values; complain and return nothing where the node does not fit.
@@ -52,7 +52,8 @@ class Reader {
 
   void check_duplicates(const Node& node);
   /// "name = text fault", what was expected of the key, and a remedy.
-  void wrong_value(const Keyword& keyword, const Node& node, const std::string& fault, const std::string& remedy = {});
+  void wrong_value(const Keyword& keyword, const Node& node, const std::string& fault,
+                   const std::string& remedy = {});
   /// Remembers a name that must exist elsewhere.
   void refer(const std::string& kind, const Node& node);
   void refer_key(const std::string& kind, const Entry& entry);

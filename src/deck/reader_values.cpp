@@ -1,16 +1,19 @@
-#include <algorithm>
-
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <deck/reader.hpp>
 #include <deck/scalars.hpp>
 #include <tautline/core/text.hpp>
 
 namespace tautline::deck {
 
-void Reader::wrong_value(const Keyword& keyword, const Node& node, const std::string& fault, const std::string& remedy) {
-  const std::string value = !node.is_scalar() ? "" : node.quoted ? fmt::format(" = \"{}\"", node.text) : " = " + node.text;
-  complain(node, fmt::format("{}{} {}", keyword.name, value, fault), "expected " + keyword.expectation(), remedy);
+void Reader::wrong_value(const Keyword& keyword, const Node& node, const std::string& fault,
+                         const std::string& remedy) {
+  const std::string value = !node.is_scalar() ? ""
+                            : node.quoted     ? fmt::format(" = \"{}\"", node.text)
+                                              : " = " + node.text;
+  complain(node, fmt::format("{}{} {}", keyword.name, value, fault), "expected " + keyword.expectation(),
+           remedy);
 }
 
 bool Reader::expect(Node::Kind kind, const Keyword& keyword, const Node& node) {
@@ -71,8 +74,8 @@ std::optional<std::string> Reader::choice(const Keyword& keyword, const Node& no
   if (!expect(Node::Kind::scalar, keyword, node)) return {};
   const auto& known = keyword.choices;
   if (std::find(known.begin(), known.end(), node.text) != known.end()) return node.text;
-  complain(node, fmt::format("unknown {} \"{}\"", keyword.name, node.text), "expected " + keyword.expectation(),
-           did_you_mean(node.text, known));
+  complain(node, fmt::format("unknown {} \"{}\"", keyword.name, node.text),
+           "expected " + keyword.expectation(), did_you_mean(node.text, known));
   return {};
 }
 
@@ -96,7 +99,8 @@ std::optional<std::vector<std::string>> Reader::names(const Keyword& keyword, co
 std::optional<Vec3> Reader::vector(const Keyword& keyword, const Node& node) {
   if (!expect(Node::Kind::sequence, keyword, node)) return {};
   if (node.items.size() != 3) {
-    wrong_value(keyword, node, fmt::format("has {} number{}", node.items.size(), node.items.size() == 1 ? "" : "s"));
+    wrong_value(keyword, node,
+                fmt::format("has {} number{}", node.items.size(), node.items.size() == 1 ? "" : "s"));
     return {};
   }
   Vec3 result = Vec3::Zero();

@@ -1,13 +1,12 @@
-#include <deck/scalars.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <deck/scalars.hpp>
 #include <string_view>
-
-#include <fmt/format.h>
 
 namespace tautline::deck {
 
@@ -19,11 +18,11 @@ struct Unit {
 };
 
 constexpr std::array<Unit, 22> units{{
-    {"mm", "m", 1e-3},      {"cm", "m", 1e-2},      {"m", "m", 1},         {"km", "m", 1e3},
-    {"mm^2", "m^2", 1e-6},  {"mm2", "m^2", 1e-6},   {"cm^2", "m^2", 1e-4}, {"m^2", "m^2", 1},
-    {"N", "N", 1},          {"kN", "N", 1e3},       {"MN", "N", 1e6},      {"Pa", "Pa", 1},
-    {"kPa", "Pa", 1e3},     {"MPa", "Pa", 1e6},     {"GPa", "Pa", 1e9},    {"Hz", "Hz", 1},
-    {"kHz", "Hz", 1e3},     {"MHz", "Hz", 1e6},     {"GHz", "Hz", 1e9},    {"kN/m", "N/m", 1e3},
+    {"mm", "m", 1e-3},       {"cm", "m", 1e-2},         {"m", "m", 1},         {"km", "m", 1e3},
+    {"mm^2", "m^2", 1e-6},   {"mm2", "m^2", 1e-6},      {"cm^2", "m^2", 1e-4}, {"m^2", "m^2", 1},
+    {"N", "N", 1},           {"kN", "N", 1e3},          {"MN", "N", 1e6},      {"Pa", "Pa", 1},
+    {"kPa", "Pa", 1e3},      {"MPa", "Pa", 1e6},        {"GPa", "Pa", 1e9},    {"Hz", "Hz", 1},
+    {"kHz", "Hz", 1e3},      {"MHz", "Hz", 1e6},        {"GHz", "Hz", 1e9},    {"kN/m", "N/m", 1e3},
     {"kg/m^3", "kg/m^3", 1}, {"g/m^2", "kg/m^2", 1e-3},
 }};
 
@@ -36,7 +35,8 @@ std::string_view trimmed(std::string_view text) {
 /// The number at the beginning of `text`, and what follows it.
 std::optional<double> leading_number(std::string_view text, std::string_view& rest) {
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  const bool digit = !text.empty() && std::string_view("-.0123456789").find(text.front()) != std::string_view::npos;
+  const bool digit =
+      !text.empty() && std::string_view("-.0123456789").find(text.front()) != std::string_view::npos;
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (!digit || error != std::errc() || !std::isfinite(value)) return {};
@@ -64,7 +64,9 @@ bool is_not_finite(const std::string& text) {
 
 }  // namespace
 
-std::string format_number(double value) { return fmt::format("{:.12g}", value); }
+std::string format_number(double value) {
+  return fmt::format("{:.12g}", value);
+}
 
 Parsed<double> parse_number(const std::string& text, const std::string& unit) {
   if (is_not_finite(text)) return {{}, "is not a finite number", {}};
@@ -79,7 +81,8 @@ Parsed<double> parse_number(const std::string& text, const std::string& unit) {
   }
   rest = trimmed(rest);
   if (std::isalpha(static_cast<unsigned char>(rest.front())) != 0 && rest.find(' ') == std::string_view::npos)
-    return {{}, fmt::format("carries a unit (\"{}\"); deck values are plain SI numbers", rest),
+    return {{},
+            fmt::format("carries a unit (\"{}\"); deck values are plain SI numbers", rest),
             without_unit(*value, rest, unit)};
   return {{}, "is not a number", {}};
 }
@@ -93,7 +96,8 @@ Parsed<int> parse_integer(const std::string& text) {
   if (complete && error == std::errc::result_out_of_range) return {{}, "is too large", {}};
   const auto number = parse_number(text, "-");
   if (error != std::errc() || !complete) {
-    if (!number.value) return {{}, number.fault == "is not a number" ? "is not a whole number" : number.fault, number.remedy};
+    if (!number.value)
+      return {{}, number.fault == "is not a number" ? "is not a whole number" : number.fault, number.remedy};
     return {{}, "is not a whole number", {}};
   }
   const std::size_t sign = digits.front() == '-' ? 1 : 0;

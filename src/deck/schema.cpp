@@ -1,8 +1,6 @@
 #include <cmath>
-
-#include <nlohmann/json.hpp>
-
 #include <deck/topics.hpp>
+#include <nlohmann/json.hpp>
 #include <tautline/deck/deck.hpp>
 
 namespace tautline::deck {
@@ -16,7 +14,9 @@ constexpr const char* parameter = "#/$defs/parameter";
 Json block_schema(const Block& block);
 
 /// The value, or a parameter that stands for it.
-Json or_parameter(Json value) { return {{"anyOf", Json::array({std::move(value), {{"$ref", parameter}}})}}; }
+Json or_parameter(Json value) {
+  return {{"anyOf", Json::array({std::move(value), {{"$ref", parameter}}})}};
+}
 
 Json number_schema(const Keyword& keyword, const char* type) {
   Json value{{"type", type}};
@@ -26,9 +26,15 @@ Json number_schema(const Keyword& keyword, const char* type) {
   return or_parameter(std::move(value));
 }
 
-Json list_of(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
-Json map_of(Json values) { return {{"type", "object"}, {"additionalProperties", std::move(values)}}; }
-Json name_schema() { return {{"type", Json::array({"string", "number"})}}; }
+Json list_of(Json items) {
+  return {{"type", "array"}, {"items", std::move(items)}};
+}
+Json map_of(Json values) {
+  return {{"type", "object"}, {"additionalProperties", std::move(values)}};
+}
+Json name_schema() {
+  return {{"type", Json::array({"string", "number"})}};
+}
 
 Json vector_schema() {
   Json list = list_of(or_parameter({{"type", "number"}}));
@@ -51,7 +57,8 @@ Json blocks_schema(const Keyword& keyword) {
 }
 
 Json directions_schema() {
-  return {{"anyOf", Json::array({{{"enum", {"all", "pinned"}}}, list_of({{"enum", {"x", "y", "z", "rx", "ry", "rz"}}}),
+  return {{"anyOf", Json::array({{{"enum", {"all", "pinned"}}},
+                                 list_of({{"enum", {"x", "y", "z", "rx", "ry", "rz"}}}),
                                  {{"$ref", parameter}}})}};
 }
 
@@ -118,7 +125,8 @@ std::string schema() {
   Json result{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Tautline deck"}};
   result.update(block_schema(root_blocks().alternatives.front()));
   result["oneOf"] = Json::array({{{"required", {"reflector"}}}, {{"required", {"model"}}}});
-  result["$defs"]["parameter"] = {{"type", "string"}, {"pattern", R"(\$\{[^}]+\})"}, {"description", "A parameter, ${name}."}};
+  result["$defs"]["parameter"] = {
+      {"type", "string"}, {"pattern", R"(\$\{[^}]+\})"}, {"description", "A parameter, ${name}."}};
   return result.dump(2) + "\n";
 }
 

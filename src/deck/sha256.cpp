@@ -1,10 +1,9 @@
-#include <deck/sha256.hpp>
+#include <fmt/format.h>
 
 #include <array>
 #include <bit>
 #include <cstdint>
-
-#include <fmt/format.h>
+#include <deck/sha256.hpp>
 
 namespace tautline::deck {
 
@@ -55,8 +54,10 @@ std::string sha256(std::string_view bytes) {
   padded += static_cast<char>(0x80);
   while (padded.size() % 64 != 56) padded += '\0';
   const std::uint64_t bits = std::uint64_t{bytes.size()} * 8;
-  for (int shift = 56; shift >= 0; shift -= 8) padded += static_cast<char>(bits >> static_cast<unsigned>(shift));
-  std::array<Word, 8> state{0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
+  for (int shift = 56; shift >= 0; shift -= 8)
+    padded += static_cast<char>(bits >> static_cast<unsigned>(shift));
+  std::array<Word, 8> state{0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
+                            0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
   for (std::size_t i = 0; i < padded.size(); i += 64) compress(state, std::string_view(padded).substr(i, 64));
   std::string digest;
   for (const Word word : state) digest += fmt::format("{:08x}", word);

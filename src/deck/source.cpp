@@ -1,11 +1,9 @@
-#include <deck/source.hpp>
-
-#include <algorithm>
-#include <tuple>
-
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <deck/source.hpp>
 #include <tautline/core/text.hpp>
+#include <tuple>
 
 namespace tautline::deck {
 
@@ -22,7 +20,9 @@ int continuation_bytes(unsigned char lead) {
   return -1;
 }
 
-bool is_control(unsigned char c) { return (c < 0x20U && c != '\n' && c != '\r' && c != '\t') || c == 0x7FU; }
+bool is_control(unsigned char c) {
+  return (c < 0x20U && c != '\n' && c != '\r' && c != '\t') || c == 0x7FU;
+}
 
 }  // namespace
 

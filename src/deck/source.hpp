@@ -2,13 +2,12 @@
 /// @file
 /// The text of a deck by lines, and the list of complaints about it.
 
+#include <deck/node.hpp>
 #include <set>
 #include <string>
 #include <string_view>
-#include <vector>
-
-#include <deck/node.hpp>
 #include <tautline/core/error.hpp>
+#include <vector>
 
 namespace tautline::deck {
 

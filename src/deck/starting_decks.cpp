@@ -1,23 +1,22 @@
-#include <deck/starting_decks.hpp>
-
-#include <array>
-#include <utility>
-
 #include <fmt/format.h>
 
+#include <array>
 #include <deck/reader.hpp>
+#include <deck/starting_decks.hpp>
 #include <tautline/core/text.hpp>
 #include <tautline/deck/deck.hpp>
+#include <utility>
 
 namespace tautline::deck {
 
 namespace {
 
 const std::array<std::pair<const char*, const char*>, 4>& table() {
-  static const std::array<std::pair<const char*, const char*>, 4> decks{{{"perimeter-truss", starting_perimeter_truss},
-                                                                         {"net", starting_net},
-                                                                         {"membrane", starting_membrane},
-                                                                         {"frame", starting_frame}}};
+  static const std::array<std::pair<const char*, const char*>, 4> decks{
+      {{"perimeter-truss", starting_perimeter_truss},
+       {"net", starting_net},
+       {"membrane", starting_membrane},
+       {"frame", starting_frame}}};
   return decks;
 }
 
@@ -35,7 +34,8 @@ std::string starting_deck(const std::string& kind) {
   const bool planned = kind == "umbrella" || kind == "rod-umbrella";
   Diagnostic diagnostic;
   diagnostic.where.file = "new";
-  diagnostic.message = planned ? fmt::format("kind \"{}\" is not available in this version", kind) : fmt::format("unknown kind \"{}\"", kind);
+  diagnostic.message = planned ? fmt::format("kind \"{}\" is not available in this version", kind)
+                               : fmt::format("unknown kind \"{}\"", kind);
   diagnostic.expectation = fmt::format("expected one of: {}", join(starting_deck_kinds()));
   diagnostic.suggestion = did_you_mean(kind, starting_deck_kinds());
   throw DeckError({diagnostic});

@@ -2,7 +2,8 @@
 
 namespace tautline::deck {
 
-const char* const starting_frame = R"deck(# A cantilever of beams with a load at its tip, and its natural frequencies.
+const char* const starting_frame =
+    R"deck(# A cantilever of beams with a load at its tip, and its natural frequencies.
 # All values in SI units. "tautline explain KEY" tells what a key means, e.g. "tautline explain sections.tube".
 title: cantilever
 units: SI

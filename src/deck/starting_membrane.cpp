@@ -2,7 +2,8 @@
 
 namespace tautline::deck {
 
-const char* const starting_membrane = R"deck(# A small square sail: a prestressed membrane with edge cables between four corners at different heights.
+const char* const starting_membrane =
+    R"deck(# A small square sail: a prestressed membrane with edge cables between four corners at different heights.
 # All values in SI units. "tautline explain KEY" tells what a key means, e.g. "tautline explain groups.prestress".
 title: four-point sail
 units: SI

@@ -2,7 +2,8 @@
 
 namespace tautline::deck {
 
-const char* const starting_net = R"deck(# A saddle of crossed cables: form-finding for equal tensions, then its own weight and snow.
+const char* const starting_net =
+    R"deck(# A saddle of crossed cables: form-finding for equal tensions, then its own weight and snow.
 # All values in SI units. "tautline explain KEY" tells what a key means, e.g. "tautline explain groups.tension".
 title: cable net saddle
 units: SI

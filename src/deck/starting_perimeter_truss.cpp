@@ -2,7 +2,8 @@
 
 namespace tautline::deck {
 
-const char* const starting_perimeter_truss = R"deck(# A perimeter-truss mesh reflector: two nets joined by ties, between two rims that struts hold apart.
+const char* const starting_perimeter_truss =
+    R"deck(# A perimeter-truss mesh reflector: two nets joined by ties, between two rims that struts hold apart.
 # All values in SI units. "tautline explain KEY" tells what a key means, e.g. "tautline explain reflector.gap".
 title: perimeter-truss reflector
 units: SI

@@ -1,5 +1,4 @@
 #include <deck/topics.hpp>
-
 #include <tautline/core/text.hpp>
 
 namespace tautline::deck {
@@ -9,7 +8,8 @@ std::vector<Topic> all_topics() {
   for (const Block* block : all_blocks()) {
     if (!block->kind.empty()) result.push_back({block->path, block, nullptr});
     for (const auto& keyword : block->keywords)
-      result.push_back({block->path.empty() ? keyword.name : block->path + "." + keyword.name, block, &keyword});
+      result.push_back(
+          {block->path.empty() ? keyword.name : block->path + "." + keyword.name, block, &keyword});
   }
   return result;
 }
@@ -41,12 +41,16 @@ std::string type_text(const Keyword& keyword) {
     case Type::parameters:
       return "name: value";
     case Type::blocks:
-      return keyword.shape == Shape::list ? "list of blocks" : keyword.shape == Shape::map ? "name: block" : "block";
+      return keyword.shape == Shape::list  ? "list of blocks"
+             : keyword.shape == Shape::map ? "name: block"
+                                           : "block";
   }
   return {};
 }
 
-std::string default_text(const Keyword& keyword) { return keyword.is_required ? "required" : keyword.fallback; }
+std::string default_text(const Keyword& keyword) {
+  return keyword.is_required ? "required" : keyword.fallback;
+}
 
 std::string range_text(const Keyword& keyword) {
   if (keyword.type == Type::choice) return join(keyword.choices);

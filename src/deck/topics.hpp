@@ -2,10 +2,9 @@
 /// @file
 /// The keyword table as a list of topics a user can ask for.
 
+#include <deck/keyword.hpp>
 #include <string>
 #include <vector>
-
-#include <deck/keyword.hpp>
 
 namespace tautline::deck {
 

@@ -1,9 +1,8 @@
-#include <deck/yaml_fault.hpp>
+#include <fmt/format.h>
 
 #include <array>
+#include <deck/yaml_fault.hpp>
 #include <optional>
-
-#include <fmt/format.h>
 
 namespace tautline::deck {
 
@@ -20,7 +19,8 @@ class BracketScan {
  public:
   /// The bracket that is closed by one of the other sort, or else the first that is never closed.
   std::optional<Bracket> unclosed(const Source& source) {
-    for (int number = 0; number < source.n_lines() && !crossed_; ++number) scan_line(source.line(number + 1), number);
+    for (int number = 0; number < source.n_lines() && !crossed_; ++number)
+      scan_line(source.line(number + 1), number);
     if (open_.empty()) return {};
     return crossed_ ? open_.back() : open_.front();
   }
@@ -48,7 +48,8 @@ class BracketScan {
   }
   static bool at_value(const std::string& line, std::size_t i) {
     const auto before = line.find_last_not_of(" \t", i == 0 ? std::string::npos : i - 1);
-    return i == 0 || before == std::string::npos || std::string("[{,:-").find(line[before]) != std::string::npos;
+    return i == 0 || before == std::string::npos ||
+           std::string("[{,:-").find(line[before]) != std::string::npos;
   }
 
   std::vector<Bracket> open_;
@@ -79,9 +80,11 @@ Translation translated(const std::string& complaint) {
       {"illegal map value", "a \":\" where no key can stand",
        "text that holds \": \" needs quotes; keys of one block need the same indentation"},
       {"end of map not found", "this line does not fit the mapping it stands in", "check the indentation"},
-      {"end of sequence not found", "this line does not fit the list it stands in", "check the indentation and the \"-\""},
+      {"end of sequence not found", "this line does not fit the list it stands in",
+       "check the indentation and the \"-\""},
       {"illegal block entry", "a list (\"-\") cannot begin here", ""},
-      {"the referenced anchor is not defined", "an alias without its anchor", "\"&name\" must stand before \"*name\""},
+      {"the referenced anchor is not defined", "an alias without its anchor",
+       "\"&name\" must stand before \"*name\""},
       {"unknown token", "no text can begin with this character", "put the text in quotes"},
       {"unknown escape character", "an unknown escape", "a backslash in double quotes is written \"\\\\\""},
       {"illegal flow end", "a closing bracket without its opening one", ""},
@@ -100,13 +103,15 @@ void reject(const Place& place, const std::string& message, const std::string& r
 YamlFault explain_syntax(const Source& source, int line, int column, const std::string& complaint) {
   const std::string& text = source.line(line + 1);
   if (has_leading_tab(text))
-    return {source.place(line, static_cast<int>(text.find('\t')), 1), "a tab in the indentation", "use spaces"};
+    return {source.place(line, static_cast<int>(text.find('\t')), 1), "a tab in the indentation",
+            "use spaces"};
   if (has_bare_parameter(text, column))
-    return {source.place(line, static_cast<int>(text.find("${")), 2), "a parameter inside [ ] or { } needs quotes",
-            "write \"${name}\""};
+    return {source.place(line, static_cast<int>(text.find("${")), 2),
+            "a parameter inside [ ] or { } needs quotes", "write \"${name}\""};
   if (complaint.find("flow") != std::string::npos || line >= source.n_lines()) {
     if (const auto open = BracketScan().unclosed(source))
-      return {source.place(open->line, open->column, 1), fmt::format("this \"{}\" is not closed", open->symbol),
+      return {source.place(open->line, open->column, 1),
+              fmt::format("this \"{}\" is not closed", open->symbol),
               fmt::format("reading stopped near line {}", std::min(line + 1, source.n_lines()))};
   }
   const auto [theirs, message, remedy] = translated(complaint);

@@ -2,10 +2,9 @@
 /// @file
 /// What is wrong with a deck's YAML, in words a user can act on.
 
-#include <string>
-
 #include <deck/node.hpp>
 #include <deck/source.hpp>
+#include <string>
 
 namespace tautline::deck {
 

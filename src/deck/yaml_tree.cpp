@@ -1,20 +1,18 @@
-#include <deck/yaml_tree.hpp>
-
-#include <algorithm>
-#include <map>
-#include <sstream>
-
 #include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <deck/yaml_fault.hpp>
+#include <deck/yaml_tree.hpp>
+#include <map>
+#include <sstream>
 
 namespace tautline::deck {
 
 namespace {
 
-constexpr std::size_t most_nodes = 4'000'000;  ///< a guard against anchors that multiply each other
+constexpr std::size_t most_nodes = 1'000'000;  ///< a guard against anchors that multiply each other
 
 std::size_t count(const Node& node) {
   std::size_t total = 1;
@@ -54,16 +52,17 @@ class TreeBuilder : public YAML::EventHandler {
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchors_.find(anchor);
     if (found == anchors_.end()) reject(place(mark, 1), "this alias stands inside its own anchor");
-    Node node = found->second;
-    n_nodes_ += count(node);
+    n_nodes_ += count(found->second);
     if (n_nodes_ > most_nodes) reject(place(mark, 1), "aliases make the deck too large");
+    Node node = found->second;
     set_note(node, fmt::format("the value comes from the anchor in line {}", node.place.line));
     node.place = place(mark, word_length(mark));
     if (in_key_position()) reject(node.place, "an alias cannot be a key");
     add(std::move(node));
   }
 
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& value) override {
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
     reject_tag(mark, tag);
     const YAML::Mark begin = after_anchor(mark);
     Node node;
@@ -105,7 +104,9 @@ class TreeBuilder : public YAML::EventHandler {
   bool in_key_position() const {
     return !open_.empty() && open_.back().node.is_mapping() && !open_.back().has_key;
   }
-  Place place(const YAML::Mark& mark, std::size_t bytes) const { return source_.place(mark.line, mark.column, bytes); }
+  Place place(const YAML::Mark& mark, std::size_t bytes) const {
+    return source_.place(mark.line, mark.column, bytes);
+  }
   char character(const YAML::Mark& mark) const {
     const std::string& line = source_.line(mark.line + 1);
     return mark.column < static_cast<int>(line.size()) ? line[static_cast<std::size_t>(mark.column)] : '\n';
@@ -119,7 +120,8 @@ class TreeBuilder : public YAML::EventHandler {
   YAML::Mark after_anchor(YAML::Mark mark) const {
     const std::string& line = source_.line(mark.line + 1);
     if (character(mark) != '&') return mark;
-    const auto value = line.find_first_not_of(" \t", static_cast<std::size_t>(mark.column) + word_length(mark));
+    const auto value =
+        line.find_first_not_of(" \t", static_cast<std::size_t>(mark.column) + word_length(mark));
     if (value != std::string::npos) mark.column = static_cast<int>(value);
     return mark;
   }
@@ -169,7 +171,8 @@ class TreeBuilder : public YAML::EventHandler {
   int n_documents_ = 0;
 };
 
-[[noreturn]] void fail(const Source& source, const Place& place, const std::string& message, const std::string& remedy) {
+[[noreturn]] void fail(const Source& source, const Place& place, const std::string& message,
+                       const std::string& remedy) {
   Diagnostic diagnostic = source.diagnostic(place, message);
   diagnostic.suggestion = remedy;
   throw DeckError({diagnostic});
@@ -180,11 +183,13 @@ void reject_bytes(const Source& source, const std::string& text) {
   if (bad == std::string::npos) return;
   const auto byte = static_cast<unsigned char>(text[bad]);
   const auto line_begin = text.rfind('\n', bad == 0 ? 0 : bad - 1);
-  const auto line = static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(bad), '\n'));
+  const auto line =
+      static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(bad), '\n'));
   Diagnostic diagnostic;
   diagnostic.where = {source.name(), line + 1, static_cast<int>(line == 0 ? bad : bad - line_begin - 1) + 1};
-  diagnostic.message = byte < 0x80U ? fmt::format("this is no text file: it holds the control character 0x{:02X}", byte)
-                                    : fmt::format("this is no text file in UTF-8: it holds the byte 0x{:02X}", byte);
+  diagnostic.message =
+      byte < 0x80U ? fmt::format("this is no text file: it holds the control character 0x{:02X}", byte)
+                   : fmt::format("this is no text file in UTF-8: it holds the byte 0x{:02X}", byte);
   diagnostic.suggestion = "save the deck as plain text in UTF-8";
   throw DeckError({diagnostic});
 }
@@ -192,8 +197,11 @@ void reject_bytes(const Source& source, const std::string& text) {
 void reject_top(const Source& source, const Node& root, bool started) {
   if (root.is_mapping()) return;
   const bool empty = !started || root.kind == Node::Kind::empty;
-  if (empty) fail(source, Place(), "the deck is empty", "\"tautline new perimeter-truss\" prints a deck to start from");
-  fail(source, root.place, fmt::format("a deck is a mapping (key: value), but this is {}", root.describe()), "");
+  if (empty)
+    fail(source, Place(), "the deck is empty",
+         "\"tautline new perimeter-truss\" prints a deck to start from");
+  fail(source, root.place, fmt::format("a deck is a mapping (key: value), but this is {}", root.describe()),
+       "");
 }
 
 }  // namespace

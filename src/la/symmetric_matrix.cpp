@@ -53,6 +53,13 @@ SymmetricMatrix SymmetricMatrix::shifted(double value) const {
   return result;
 }
 
+SymmetricMatrix SymmetricMatrix::plus(double factor, const SymmetricMatrix& other) const {
+  SymmetricMatrix result;
+  check(MatDuplicate(mat_, MAT_COPY_VALUES, &result.mat_), "MatDuplicate");
+  check(MatAXPY(result.mat_, factor, other.mat_, SUBSET_NONZERO_PATTERN), "MatAXPY");
+  return result;
+}
+
 double SymmetricMatrix::norm_of_diagonal() const {
   ::Vec diagonal = nullptr;
   check(MatCreateVecs(mat_, &diagonal, nullptr), "MatCreateVecs");

@@ -1,11 +1,9 @@
-#include <tautline/mesh/imported_mesh.hpp>
-
-#include <filesystem>
-
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <tautline/core/error.hpp>
 #include <tautline/core/plugin.hpp>
+#include <tautline/mesh/imported_mesh.hpp>
 
 #include "mesh/gmsh/plugin.hpp"
 
@@ -30,7 +28,8 @@ ImportedMesh import_gmsh(const std::string& path) {
   ImportedMesh mesh;
   std::string reason;
   const Outcome outcome = read(path.c_str(), &mesh, &reason);
-  if (outcome == Outcome::unreadable) throw LibraryError(fmt::format("gmsh cannot read the mesh {}: {}", path, reason));
+  if (outcome == Outcome::unreadable)
+    throw LibraryError(fmt::format("gmsh cannot read the mesh {}: {}", path, reason));
   if (outcome == Outcome::unsuitable) throw ModelError(fmt::format("the mesh {} {}", path, reason));
   return mesh;
 }

@@ -1,8 +1,8 @@
 #pragma once
-// A nonlinear problem given by two functions of a few unknowns: Newton and the path driver without any elements.
+// A nonlinear problem given by two functions of a few unknowns: Newton and the path driver without any
+// elements.
 
 #include <functional>
-
 #include <tautline/analysis/path.hpp>
 
 #include "la/chain.hpp"
@@ -22,7 +22,8 @@ class DenseProblem : public PathProblem {
   using Gradient = std::function<VecX(const VecX& x, double lambda)>;
   using Hessian = std::function<MatX(const VecX& x)>;
 
-  DenseProblem(Gradient gradient, Hessian hessian) : gradient_(std::move(gradient)), hessian_(std::move(hessian)) {}
+  DenseProblem(Gradient gradient, Hessian hessian)
+      : gradient_(std::move(gradient)), hessian_(std::move(hessian)) {}
 
   VecX point = VecX::Zero(n);      ///< where the problem is
   VecX committed = VecX::Zero(n);  ///< where it was when it was kept last

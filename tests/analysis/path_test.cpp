@@ -1,6 +1,5 @@
-#include <tautline/analysis/path.hpp>
-
 #include <cmath>
+#include <tautline/analysis/path.hpp>
 
 #include "analysis/dense_problem.hpp"
 #include "messages.hpp"
@@ -23,7 +22,8 @@ DenseProblem hardening() {
                    [](double x) { return 1 + 3 * x * x; });
 }
 
-/// x = lambda, of which the problem can only reach `reach(kept)` beyond the point kept last; farther there is no residual.
+/// x = lambda, of which the problem can only reach `reach(kept)` beyond the point kept last; farther there is
+/// no residual.
 class ShortSighted : public DenseProblem {
  public:
   explicit ShortSighted(std::function<double(double)> reach)
@@ -97,7 +97,8 @@ TEST(Path, DoublesItsStepAfterEasyOnes) {
 
 TEST(Path, WithoutASolutionStopsBeforeItAndStaysAtTheLastConvergedPoint) {
   // x - x^2 = lambda / 2.4 has no solution beyond lambda = 0.6, where x = 1/2 and the tangent vanishes.
-  auto problem = six_times([](double x, double lambda) { return x - x * x - lambda / 2.4; }, [](double x) { return 1 - 2 * x; });
+  auto problem = six_times([](double x, double lambda) { return x - x * x - lambda / 2.4; },
+                           [](double x) { return 1 - 2 * x; });
   auto work = workspace();
   const NewtonOptions options = few_iterations();
   const auto summary = follow_path(problem, work, options);
@@ -142,8 +143,9 @@ DenseProblem saddle(double load) {
     s[2] = -1;
     return s;
   };
-  return {[=](const VecX& x, double lambda) -> VecX { return signs().cwiseProduct(x).array() - lambda * load; },
-          [=](const VecX&) -> MatX { return signs().asDiagonal(); }};
+  return {
+      [=](const VecX& x, double lambda) -> VecX { return signs().cwiseProduct(x).array() - lambda * load; },
+      [=](const VecX&) -> MatX { return signs().asDiagonal(); }};
 }
 
 TEST(Path, EndsWithTheInertiaOfItsTangent) {

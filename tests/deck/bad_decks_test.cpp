@@ -53,8 +53,9 @@ TEST(BadDecks, DamagedTextNeverBreaksTheReader) {
   const std::string text = read_file(source_dir / "tests/decks/good/reflector_all_keys.yaml");
   const std::string damage = "[]{}:\"'#&*\t\n,-!|>%@`~\xC3";
   for (std::size_t i = 0; i < text.size(); i += 7) {
-    for (const std::string& broken : {text.substr(0, i), text.substr(i), text.substr(0, i) + damage[i % damage.size()] + text.substr(i),
-                                      text.substr(0, i) + damage[(i / 7) % damage.size()] + text.substr(i + 1)}) {
+    for (const std::string& broken :
+         {text.substr(0, i), text.substr(i), text.substr(0, i) + damage[i % damage.size()] + text.substr(i),
+          text.substr(0, i) + damage[(i / 7) % damage.size()] + text.substr(i + 1)}) {
       try {
         parse_deck(broken, "broken.yaml");
       } catch (const DeckError& error) {

@@ -15,7 +15,9 @@ namespace tautline::deck::test {
 inline const std::filesystem::path source_dir = TAUTLINE_SOURCE_DIR;
 
 /// TAUTLINE_UPDATE=1 in the environment: expected texts are written instead of compared.
-inline bool updating() { return std::getenv("TAUTLINE_UPDATE") != nullptr; }
+inline bool updating() {
+  return std::getenv("TAUTLINE_UPDATE") != nullptr;
+}
 
 inline std::string read_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -27,7 +29,8 @@ inline void write_file(const std::filesystem::path& path, const std::string& tex
 }
 
 /// Files of a folder with this extension, sorted.
-inline std::vector<std::filesystem::path> files(const std::filesystem::path& folder, const std::string& extension) {
+inline std::vector<std::filesystem::path> files(const std::filesystem::path& folder,
+                                                const std::string& extension) {
   std::vector<std::filesystem::path> result;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().extension() == extension) result.push_back(entry.path());

@@ -10,7 +10,9 @@ using namespace test;
 
 const std::string main_deck = (source_dir / "inputs/perimeter_truss_12m.yaml").string();
 
-Deck with(const std::string& override_text) { return read_deck(main_deck, {override_text}); }
+Deck with(const std::string& override_text) {
+  return read_deck(main_deck, {override_text});
+}
 
 std::string complaint(const std::string& override_text) {
   try {
@@ -21,7 +23,9 @@ std::string complaint(const std::string& override_text) {
   }
 }
 
-int subdivisions(const Deck& deck) { return std::get<steps::MeshOptions>(deck.steps[1].options).subdivide.subdivisions; }
+int subdivisions(const Deck& deck) {
+  return std::get<steps::MeshOptions>(deck.steps[1].options).subdivide.subdivisions;
+}
 
 TEST(Overrides, ChangeParameters) {
   const Deck deck = with("parameters.subdivisions=8");
@@ -34,7 +38,10 @@ TEST(Overrides, ReachValuesByPathIndexAndName) {
   EXPECT_EQ(subdivisions(with("steps.1.subdivisions=2")), 2);
   EXPECT_EQ(subdivisions(with("steps.mesh.subdivisions=3")), 3);
   EXPECT_EQ(with("supports.held strut.fix=pinned").supports[0].fixed[3], false);
-  EXPECT_EQ(std::get<steps::EquilibriumOptions>(with("steps.staged.stages.0.hold.1=ties").steps[2].options).stages[0].hold[1], "ties");
+  EXPECT_EQ(std::get<steps::EquilibriumOptions>(with("steps.staged.stages.0.hold.1=ties").steps[2].options)
+                .stages[0]
+                .hold[1],
+            "ties");
 }
 
 TEST(Overrides, AddKeysAndBlocksThatHaveDefaults) {
@@ -52,20 +59,32 @@ TEST(Overrides, TellWhatIsWrongWithThem) {
   EXPECT_EQ(complaint("reflector.gap"),
             "--set reflector.gap: error: this is no override\n  expected path.to.key=value\n");
   EXPECT_EQ(complaint("reflector.gap=wide"),
-            "--set reflector.gap=wide: error: gap = wide is not a number\n  in reflector; expected a number >= 0 [m]\n");
-  EXPECT_EQ(complaint("reflector.gpa=1"),
-            "--set reflector.gpa=1: error: unknown key \"gpa\"\n  in reflector\n  did you mean \"gap\"?\n");
+            "--set reflector.gap=wide: error: gap = wide is not a number\n  in reflector; expected a number "
+            ">= 0 [m]\n");
+  EXPECT_EQ(
+      complaint("reflector.ring=1"),
+      "--set reflector.ring=1: error: unknown key \"ring\"\n  in reflector\n  did you mean \"rings\"?\n");
   EXPECT_EQ(complaint("parameters.subdivision=8"),
             "--set parameters.subdivision=8: error: the deck has no \"subdivision\" here\n"
             "  expected one of: subdivisions, rim_width\n  did you mean \"subdivisions\"?\n");
-  EXPECT_EQ(complaint("steps.9.subdivisions=2").rfind("--set steps.9.subdivisions=2: error: the deck has no \"9\" here\n", 0), 0U);
-  EXPECT_EQ(complaint("groups.front_nett.tension=2").rfind("--set groups.front_nett.tension=2: error: the deck has no \"front_nett\" here", 0), 0U);
-  EXPECT_EQ(complaint("reflector=1").rfind("--set reflector=1: error: this is a mapping, which cannot be set", 0), 0U);
-  EXPECT_EQ(complaint("reflector.gap="), "--set reflector.gap=: error: \"gap\" has no value\n  in reflector; expected a number >= 0 [m]\n");
+  EXPECT_EQ(complaint("steps.9.subdivisions=2")
+                .rfind("--set steps.9.subdivisions=2: error: the deck has no \"9\" here\n", 0),
+            0U);
+  EXPECT_EQ(complaint("groups.front_nett.tension=2")
+                .rfind("--set groups.front_nett.tension=2: error: the deck has no \"front_nett\" here", 0),
+            0U);
+  EXPECT_EQ(
+      complaint("reflector=1").rfind("--set reflector=1: error: this is a mapping, which cannot be set", 0),
+      0U);
+  EXPECT_EQ(
+      complaint("reflector.gap="),
+      "--set reflector.gap=: error: \"gap\" has no value\n  in reflector; expected a number >= 0 [m]\n");
 }
 
 TEST(Overrides, AParametersOverrideIsNamedWhereItsValueDoesNotFit) {
-  EXPECT_NE(complaint("parameters.subdivisions=0").find("${subdivisions} is 0 (--set parameters.subdivisions=0)"), std::string::npos)
+  EXPECT_NE(
+      complaint("parameters.subdivisions=0").find("${subdivisions} is 0 (--set parameters.subdivisions=0)"),
+      std::string::npos)
       << complaint("parameters.subdivisions=0");
 }
 

@@ -1,9 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include <deck/files.hpp>
 #include <deck/topics.hpp>
+#include <nlohmann/json.hpp>
 #include <tautline/deck/deck.hpp>
 
 namespace tautline::deck {
@@ -18,12 +17,14 @@ TEST(Reference, CommittedPagesAreUpToDate) {
     if (updating()) write_file(folder / name, text);
     EXPECT_EQ(read_file(folder / name), text) << name << ": TAUTLINE_UPDATE=1 test_deck writes it anew";
   }
-  for (const auto& file : files(folder, ".md")) EXPECT_TRUE(pages.count(file.filename().string()) > 0) << file;
+  for (const auto& file : files(folder, ".md"))
+    EXPECT_TRUE(pages.count(file.filename().string()) > 0) << file;
 }
 
 TEST(Explain, ShowsTheContents) {
   const std::string text = explain("");
-  for (const char* key : {"reflector", "model", "materials", "sections", "groups", "supports", "loads", "steps", "output", "solver"})
+  for (const char* key : {"reflector", "model", "materials", "sections", "groups", "supports", "loads",
+                          "steps", "output", "solver"})
     EXPECT_NE(text.find(std::string("  ") + key + " "), std::string::npos) << key;
 }
 
@@ -44,7 +45,8 @@ TEST(Explain, ListsWhatAWordCanMean) {
 }
 
 TEST(Explain, KnowsEveryPathOfTheTable) {
-  for (const auto& topic : all_topics()) EXPECT_EQ(explain(topic.path).rfind(topic.path, 0), 0U) << topic.path;
+  for (const auto& topic : all_topics())
+    EXPECT_EQ(explain(topic.path).rfind(topic.path, 0), 0U) << topic.path;
 }
 
 TEST(Explain, SuggestsForAnUnknownKey) {
@@ -60,7 +62,8 @@ TEST(Schema, IsJsonWithEveryTopLevelKey) {
   const auto json = nlohmann::json::parse(schema());
   EXPECT_EQ(json["$schema"], "https://json-schema.org/draft/2020-12/schema");
   EXPECT_EQ(json["additionalProperties"], false);
-  for (const auto& keyword : root_blocks().alternatives.front().keywords) EXPECT_TRUE(json["properties"].contains(keyword.name));
+  for (const auto& keyword : root_blocks().alternatives.front().keywords)
+    EXPECT_TRUE(json["properties"].contains(keyword.name));
 }
 
 TEST(Schema, ChoosesByKind) {

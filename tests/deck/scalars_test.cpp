@@ -16,7 +16,8 @@ TEST(Scalars, ReadNumbers) {
 }
 
 TEST(Scalars, RejectWhatIsNoFiniteNumber) {
-  for (const char* text : {"", "twelve", "nan", ".nan", "NaN", "inf", "-.inf", "1e999", "0x10", "1 2", "1..2", "--1", "1e", "e5", "1_000"})
+  for (const char* text : {"", "twelve", "nan", ".nan", "NaN", "inf", "-.inf", "1e999", "0x10", "1 2", "1..2",
+                           "--1", "1e", "e5", "1_000"})
     EXPECT_FALSE(parse_number(text, "m").value) << text;
 }
 
@@ -31,14 +32,16 @@ TEST(Scalars, ReadWholeNumbers) {
   EXPECT_EQ(parse_integer("8").value, 8);
   EXPECT_EQ(parse_integer("-3").value, -3);
   EXPECT_EQ(parse_integer("0").value, 0);
-  for (const char* text : {"010", "2.5", "2.0", "1e3", "", "99999999999", "4 parts", "true"}) EXPECT_FALSE(parse_integer(text).value) << text;
+  for (const char* text : {"010", "2.5", "2.0", "1e3", "", "99999999999", "4 parts", "true"})
+    EXPECT_FALSE(parse_integer(text).value) << text;
   EXPECT_EQ(parse_integer("010").remedy, "write 10");
 }
 
 TEST(Scalars, ReadOnlyTrueAndFalse) {
   EXPECT_EQ(parse_boolean("true").value, true);
   EXPECT_EQ(parse_boolean("false").value, false);
-  for (const char* text : {"yes", "no", "on", "True", "1", "", "maybe"}) EXPECT_FALSE(parse_boolean(text).value) << text;
+  for (const char* text : {"yes", "no", "on", "True", "1", "", "maybe"})
+    EXPECT_FALSE(parse_boolean(text).value) << text;
   EXPECT_EQ(parse_boolean("no").remedy, "write false");
 }
 

@@ -5,7 +5,9 @@
 namespace tautline::deck {
 namespace {
 
-Node parse(const std::string& text) { return parse_yaml(Source("deck.yaml", text), text); }
+Node parse(const std::string& text) {
+  return parse_yaml(Source("deck.yaml", text), text);
+}
 
 void expect_place(const Place& place, int line, int column, int length) {
   EXPECT_EQ(place.line, line);
@@ -38,7 +40,9 @@ TEST(YamlTree, PlacesAnAliasWhereItIsUsed) {
   expect_place(root.at({"e", "d"})->place, 3, 11, 1);
 }
 
-TEST(YamlTree, KeepsDuplicateKeys) { EXPECT_EQ(parse("a: 1\na: 2\n").entries.size(), 2U); }
+TEST(YamlTree, KeepsDuplicateKeys) {
+  EXPECT_EQ(parse("a: 1\na: 2\n").entries.size(), 2U);
+}
 
 TEST(YamlTree, TellsQuotedFromPlain) {
   const Node root = parse("a: 12\nb: \"12\"\nc: '12'\n");

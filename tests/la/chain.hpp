@@ -1,16 +1,16 @@
 #pragma once
-// Chains of springs and masses, whose eigenvalues are known in closed form, as distributed matrices and vectors.
+// Chains of springs and masses, whose eigenvalues are known in closed form, as distributed matrices and
+// vectors.
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <vector>
-
-#include <Eigen/Dense>
 #include <tautline/core/types.hpp>
 #include <tautline/la/session.hpp>
 #include <tautline/la/symmetric_matrix.hpp>
 #include <tautline/la/vector.hpp>
+#include <vector>
 
 namespace tautline::la::testing_chain {
 

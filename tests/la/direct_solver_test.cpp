@@ -21,7 +21,8 @@ TEST(DirectSolver, SolvesADefiniteSystem) {
   ASSERT_TRUE(solver.factor(matrix));
   Vector x(layout_of(4));
   solver.solve(vector_of(b), x);
-  EXPECT_LT((k * dense_of(x) - b).norm(), 1e-13 * b.norm() * 100);  // condition number of the chain: 4 (n + 1)^2 / pi^2
+  EXPECT_LT((k * dense_of(x) - b).norm(),
+            1e-13 * b.norm() * 100);  // condition number of the chain: 4 (n + 1)^2 / pi^2
   EXPECT_EQ(solver.inertia().negative, 0);
   EXPECT_EQ(solver.inertia().null, 0);
 }
@@ -138,6 +139,14 @@ TEST(SymmetricMatrix, MultipliesLikeTheDenseOne) {
   Vector y(layout_of(4));
   matrix.multiply(vector_of(x), y);
   EXPECT_LT((dense_of(y) - dense * x).norm(), 1e-14 * x.norm() * dense.norm());
+}
+
+TEST(SymmetricMatrix, AddsAMultipleOfAnother) {
+  const MatX a = held_chain(12, 2), b = free_chain(12, 3);
+  const VecX x = some_load(12);
+  Vector y(layout_of(4));
+  matrix_of(a).plus(-0.5, matrix_of(b)).multiply(vector_of(x), y);
+  EXPECT_LT((dense_of(y) - a * x + 0.5 * b * x).norm(), 1e-13 * x.norm());
 }
 
 TEST(SymmetricMatrix, HasAShiftedCopyAndTheLargestDiagonalEntry) {

@@ -1,6 +1,5 @@
-#include <tautline/la/eigen_solver.hpp>
-
 #include <tautline/core/error.hpp>
+#include <tautline/la/eigen_solver.hpp>
 
 #include "la/chain.hpp"
 
@@ -77,7 +76,18 @@ TEST(Vibration, OfThreeEqualChainsFindsEveryModeThreeTimes) {
   for (int j = 0; j < 6; ++j) {
     const double exact = held_chain_eigenvalue(n, 10, j / 3 + 1);
     EXPECT_NEAR(pairs.values[j], exact, tolerance * exact) << "mode " << j + 1;
+    for (int i = 0; i <= j; ++i)
+      EXPECT_NEAR(pairs.vectors[i].dot(pairs.vectors[j]), i == j ? 1 : 0, 1e-10)
+          << "modes " << i + 1 << ", " << j + 1;
   }
+}
+
+TEST(Vibration, FindsTheModesOnBothSidesOfAShift) {
+  const int n = 12;
+  const double shift = 0.5 * (held_chain_eigenvalue(n, 1, 5) + held_chain_eigenvalue(n, 1, 6));
+  const auto pairs = solve_vibration(matrix_of(held_chain(n, 1)), matrix_of(MatX::Identity(n, n)), 2, shift);
+  EXPECT_NEAR(pairs.values[0], held_chain_eigenvalue(n, 1, 5), tolerance);
+  EXPECT_NEAR(pairs.values[1], held_chain_eigenvalue(n, 1, 6), tolerance);
 }
 
 TEST(Vibration, AskedForMoreModesThanThereAreMassesSaysSo) {

@@ -1,12 +1,10 @@
-#include <tautline/mesh/imported_mesh.hpp>
-
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <set>
-
 #include <tautline/core/error.hpp>
+#include <tautline/mesh/imported_mesh.hpp>
 
 #include "messages.hpp"
 
@@ -20,7 +18,8 @@ using testing_messages::message_of;
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& text)
-      : path_(std::filesystem::temp_directory_path() / ("tautline_mesh_" + std::to_string(getpid()) + ".msh")) {
+      : path_(std::filesystem::temp_directory_path() /
+              ("tautline_mesh_" + std::to_string(getpid()) + ".msh")) {
     std::ofstream(path_) << text;
   }
   ~TemporaryFile() {
@@ -37,8 +36,8 @@ class TemporaryFile {
 
 /// A mesh in the second version of the format, as other programs write it.
 std::string msh2(const std::string& names, const std::string& nodes, const std::string& elements) {
-  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + names + "$Nodes\n" + nodes + "$EndNodes\n$Elements\n" + elements +
-         "$EndElements\n";
+  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + names + "$Nodes\n" + nodes + "$EndNodes\n$Elements\n" +
+         elements + "$EndElements\n";
 }
 
 TEST(ImportedMesh, OfAFileThatDoesNotExistIsRefusedBeforeGmshIsAsked) {
@@ -49,7 +48,9 @@ TEST(ImportedMesh, OfAFileThatDoesNotExistIsRefusedBeforeGmshIsAsked) {
 
 #if TAUTLINE_TEST_GMSH
 
-ImportedMesh square_membrane() { return import_gmsh(TAUTLINE_SOURCE_DIR "/meshes/square_membrane.msh"); }
+ImportedMesh square_membrane() {
+  return import_gmsh(TAUTLINE_SOURCE_DIR "/meshes/square_membrane.msh");
+}
 
 TEST(ImportedMesh, HasTheNodesAndTheCellsOfEachPhysicalGroup) {
   const auto mesh = square_membrane();
@@ -75,7 +76,8 @@ TEST(ImportedMesh, HasTheAreaAndTheEdgeLengthOfTheSquare) {
 TEST(ImportedMesh, HasItsPointGroupInTheCorners) {
   const auto mesh = square_membrane();
   std::set<std::pair<double, double>> corners;
-  for (const int node : mesh.groups.at("corners").points) corners.insert({mesh.nodes[node].x(), mesh.nodes[node].y()});
+  for (const int node : mesh.groups.at("corners").points)
+    corners.insert({mesh.nodes[node].x(), mesh.nodes[node].y()});
   EXPECT_EQ(corners, (std::set<std::pair<double, double>>{{0, 0}, {0, 1}, {1, 0}, {1, 1}}));
 }
 
@@ -89,14 +91,16 @@ TEST(ImportedMesh, IsTheSameWhenReadAgain) {
 constexpr auto one_surface = "$PhysicalNames\n1\n2 7 \"cloth\"\n$EndPhysicalNames\n";
 
 TEST(ImportedMesh, SplitsQuadrilateralsAlongTheShorterDiagonal) {
-  const TemporaryFile file(msh2(one_surface, "4\n1 0 0 0\n2 2 0 0\n3 3 1 0\n4 1 1 0\n", "1\n1 3 2 7 1 1 2 3 4\n"));
+  const TemporaryFile file(
+      msh2(one_surface, "4\n1 0 0 0\n2 2 0 0\n3 3 1 0\n4 1 1 0\n", "1\n1 3 2 7 1 1 2 3 4\n"));
   const auto mesh = import_gmsh(file.path());
   const auto& triangles = mesh.groups.at("cloth").triangles;
   ASSERT_EQ(triangles.size(), 2u);  // diagonals: 1-3 of length sqrt(10), 2-4 of length sqrt(2)
   for (const auto& t : triangles) {
     EXPECT_EQ(std::count(t.begin(), t.end(), 1) + std::count(t.begin(), t.end(), 3), 2);
     const auto& x = mesh.nodes;
-    EXPECT_GT((x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).z(), 0) << "the sense of the quadrilateral is kept";
+    EXPECT_GT((x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).z(), 0)
+        << "the sense of the quadrilateral is kept";
   }
 }
 

@@ -1,7 +1,6 @@
-#include <tautline/mesh/partition.hpp>
-
 #include <algorithm>
 #include <numeric>
+#include <tautline/mesh/partition.hpp>
 
 namespace tautline::mesh {
 namespace {
@@ -18,7 +17,8 @@ Graph square_grid(int n) {
 int edges_cut(const Graph& graph, const std::vector<int>& part) {
   int cut = 0;
   for (std::size_t i = 0; i < part.size(); ++i)
-    for (int k = graph.start[i]; k < graph.start[i + 1]; ++k) cut += part[i] != part[graph.neighbour[k]] ? 1 : 0;
+    for (int k = graph.start[i]; k < graph.start[i + 1]; ++k)
+      cut += part[i] != part[graph.neighbour[k]] ? 1 : 0;
   return cut / 2;
 }
 

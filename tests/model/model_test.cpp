@@ -1,6 +1,5 @@
-#include <tautline/model/model.hpp>
-
 #include <tautline/core/error.hpp>
+#include <tautline/model/model.hpp>
 
 #include "messages.hpp"
 #include "model/models.hpp"
@@ -71,7 +70,9 @@ TEST(Model, WeighsLengthsAndAreas) {
   EXPECT_DOUBLE_EQ(model.unstressed_length(model.cables[0]), 4);
 }
 
-TEST(Validation, AcceptsASoundStructure) { EXPECT_NO_THROW(validate(two_facets())); }
+TEST(Validation, AcceptsASoundStructure) {
+  EXPECT_NO_THROW(validate(two_facets()));
+}
 
 /// What validate says of two_facets() after `change`.
 template <class Change>
@@ -109,11 +110,13 @@ TEST(Validation, NamesAStiffnessThatIsNotPositive) {
   const auto beam = complaint([](Model& m) { m.groups[4].beam.torsion_stiffness = 0; });
   EXPECT_TRUE(mentions(beam, "group \"mast\": the torsion stiffness [N m^2] must be positive, is 0"));
   const auto membrane = complaint([](Model& m) { m.groups[0].membrane.tension_stiffness = std::nan(""); });
-  EXPECT_TRUE(mentions(membrane, "group \"cloth\": the tension stiffness E h [N/m] must be positive, is nan"));
+  EXPECT_TRUE(
+      mentions(membrane, "group \"cloth\": the tension stiffness E h [N/m] must be positive, is nan"));
 }
 
 TEST(Validation, NamesAMembraneWithoutArea) {
-  // Three points on a line whose coordinates are not exact in binary, so that the area is round-off and not zero.
+  // Three points on a line whose coordinates are not exact in binary, so that the area is round-off and not
+  // zero.
   const auto message = complaint([](Model& m) { m.nodes[3] = m.nodes[2] + 0.7 * (m.nodes[1] - m.nodes[2]); });
   EXPECT_TRUE(mentions(message, "membrane 2 of group \"cloth\": has no area"));
 }

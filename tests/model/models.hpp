@@ -2,7 +2,6 @@
 // Small structures that several tests of the model share.
 
 #include <string>
-
 #include <tautline/element/beam.hpp>
 #include <tautline/model/model.hpp>
 
@@ -44,21 +43,24 @@ inline void add_cable(Model& model, int group, int a, int b, double initial_stra
 inline void add_beam(Model& model, int group, int a, int b) {
   Mat<3, 2> x_ref;
   x_ref << model.nodes[a], model.nodes[b];
-  model.beams.push_back(
-      {{a, b}, group, element::beam_frame(x_ref, model.groups[group].orientation), static_cast<int>(model.beams.size())});
+  model.beams.push_back({{a, b},
+                         group,
+                         element::beam_frame(x_ref, model.groups[group].orientation),
+                         static_cast<int>(model.beams.size())});
 }
 
 inline void add_membrane(Model& model, int group, int a, int b, int c, const Vec3& prestress = Vec3::Zero()) {
   model.membranes.push_back({{a, b, c}, group, prestress, static_cast<int>(model.membranes.size())});
 }
 
-/// Two facets with the shared side 1-2, in space; a cable "ridge" on that side, a cable "tie" that is no side (0-3), a
-/// beam "strut" on the side 2-3 and a beam "mast" below node 0. Node 4 is the foot of the mast.
+/// Two facets with the shared side 1-2, in space; a cable "ridge" on that side, a cable "tie" that is no side
+/// (0-3), a beam "strut" on the side 2-3 and a beam "mast" below node 0. Node 4 is the foot of the mast.
 inline Model two_facets() {
   Model model;
   model.nodes = {{0, 0, 0}, {2, 0.1, 0.3}, {0.2, 1.7, 0.4}, {2.1, 1.9, -0.2}, {0, 0, -1}};
   const int cloth = add_membrane_group(model, "cloth"), ridge = add_cable_group(model, "ridge"),
-            tie = add_cable_group(model, "tie"), strut = add_beam_group(model, "strut"), mast = add_beam_group(model, "mast");
+            tie = add_cable_group(model, "tie"), strut = add_beam_group(model, "strut"),
+            mast = add_beam_group(model, "mast");
   add_membrane(model, cloth, 0, 1, 2, {300, 100, 40});
   add_membrane(model, cloth, 2, 1, 3, {50, 400, -70});
   add_cable(model, ridge, 1, 2, 1e-3);

@@ -1,6 +1,5 @@
-#include <tautline/model/response.hpp>
-
 #include <cmath>
+#include <tautline/model/response.hpp>
 
 #include "model/models.hpp"
 

@@ -1,7 +1,6 @@
-#include <tautline/model/section.hpp>
-
 #include <cmath>
 #include <numbers>
+#include <tautline/model/section.hpp>
 
 #include "model/models.hpp"
 
@@ -20,7 +19,8 @@ element::BeamSection beam_of(const SectionOptions& options) {
   return group.beam;
 }
 
-/// Saint-Venant's series for a rectangle of sides a >= b (Timoshenko and Goodier, Theory of Elasticity, art. 109).
+/// Saint-Venant's series for a rectangle of sides a >= b (Timoshenko and Goodier, Theory of Elasticity, art.
+/// 109).
 double torsion_constant(double a, double b) {
   double sum = 0;
   for (int n = 1; n < 60; n += 2) sum += std::tanh(n * pi * a / (2 * b)) / std::pow(n, 5);
@@ -37,7 +37,8 @@ TEST(TorsionSeries, GivesTheTabulatedFactors) {
 TEST(RectangleSection, HasTheTorsionConstantOfTheExactSeries) {
   for (const auto& [width, height] : {std::pair{0.1, 0.1}, {0.2, 0.1}, {0.1, 0.2}, {0.15, 0.1}, {0.1, 1.0}}) {
     const double exact = torsion_constant(std::max(width, height), std::min(width, height));
-    EXPECT_NEAR(beam_of(RectangleSectionOptions{"steel", width, height}).torsion_stiffness / shear_modulus, exact,
+    EXPECT_NEAR(beam_of(RectangleSectionOptions{"steel", width, height}).torsion_stiffness / shear_modulus,
+                exact,
                 5e-3 * exact)  // the error Roark states for the approximation
         << width << " x " << height;
   }

@@ -1,10 +1,8 @@
-#include <tautline/model/subdivide.hpp>
-
 #include <algorithm>
 #include <numeric>
 #include <set>
-
 #include <tautline/core/error.hpp>
+#include <tautline/model/subdivide.hpp>
 
 #include "messages.hpp"
 #include "model/models.hpp"
@@ -60,7 +58,8 @@ double smallest_distance(const Points& points) {
   return smallest;
 }
 
-/// Area of each facet kept by its parts, each part facing the same way, no two nodes in one place, Euler's count right.
+/// Area of each facet kept by its parts, each part facing the same way, no two nodes in one place, Euler's
+/// count right.
 void expect_sound_cloth(const Model& structure, const Model& mesh) {
   std::vector<Vec3> area(structure.membranes.size(), Vec3::Zero());
   for (const auto& m : mesh.membranes) {
@@ -91,8 +90,8 @@ TEST_P(StructuredPattern, MakesSimilarTriangles) {
   const int s = GetParam();
   const auto structure = two_bare_facets(), mesh = subdivide(structure, parts(s));
   for (const auto& m : mesh.membranes)
-    EXPECT_NEAR(directed_area(mesh, m).norm() * s * s, directed_area(structure, structure.membranes[m.parent]).norm(),
-                1e-14);
+    EXPECT_NEAR(directed_area(mesh, m).norm() * s * s,
+                directed_area(structure, structure.membranes[m.parent]).norm(), 1e-14);
 }
 
 class MappedPattern : public ::testing::TestWithParam<int> {};
@@ -112,12 +111,14 @@ TEST(MappedPattern, WithoutSubdivisionIsTheFacetItself) {
 }
 
 class EitherPattern : public ::testing::TestWithParam<FacetPattern> {};
-INSTANTIATE_TEST_SUITE_P(Patterns, EitherPattern, ::testing::Values(FacetPattern::structured, FacetPattern::mapped));
+INSTANTIATE_TEST_SUITE_P(Patterns, EitherPattern,
+                         ::testing::Values(FacetPattern::structured, FacetPattern::mapped));
 
 TEST_P(EitherPattern, KeepsTheTensorOfAnAnisotropicPrestress) {
   const auto structure = two_facets(), mesh = subdivide(structure, parts(4, GetParam()));
   for (const auto& m : mesh.membranes)
-    EXPECT_LT((prestress_tensor(mesh, m) - prestress_tensor(structure, structure.membranes[m.parent])).norm(), 1e-12 * 400);
+    EXPECT_LT((prestress_tensor(mesh, m) - prestress_tensor(structure, structure.membranes[m.parent])).norm(),
+              1e-12 * 400);
 }
 
 TEST_P(EitherPattern, SplitsCablesOnFacetSidesAtTheNodesOfTheCloth) {
@@ -181,8 +182,9 @@ TEST(Subdivision, RefusesAnOverrideThatWouldTearALineFromTheCloth) {
 
 TEST(Subdivision, RefusesWhatCannotBe) {
   EXPECT_TRUE(mentions(message_of<ModelError>([] { subdivide(two_facets(), parts(0)); }), "1 or more, is 0"));
-  EXPECT_TRUE(mentions(message_of<ModelError>([] { subdivide(two_facets(), parts(3, FacetPattern::mapped)); }),
-                       "even number of subdivisions, not 3"));
+  EXPECT_TRUE(
+      mentions(message_of<ModelError>([] { subdivide(two_facets(), parts(3, FacetPattern::mapped)); }),
+               "even number of subdivisions, not 3"));
   const auto with = [](const std::string& group, int n) {
     auto options = parts(2);
     options.group_subdivisions[group] = n;
@@ -213,7 +215,8 @@ TEST(Subdivision, SharesTheUnstressedLengthOfACableOutEqually) {
 
 TEST(Subdivision, LeavesTheMassAsItIs) {
   const auto structure = two_facets(), mesh = subdivide(structure, parts(4, FacetPattern::mapped));
-  for (const auto& [name, mass] : mass_by_group(structure)) EXPECT_NEAR(mass_by_group(mesh).at(name), mass, 1e-14 * mass);
+  for (const auto& [name, mass] : mass_by_group(structure))
+    EXPECT_NEAR(mass_by_group(mesh).at(name), mass, 1e-14 * mass);
 }
 
 TEST(Subdivision, KeepsTheNodesOfTheStructureInTheirPlaces) {

@@ -6,7 +6,8 @@
 
 namespace tautline {
 
-/// @brief Address of an extern "C" function of a plugin; the plugin is loaded at its first call and stays for the life of the process.
+/// @brief Address of an extern "C" function of a plugin; the plugin is loaded at its first call and stays for
+/// the life of the process.
 ///
 /// The plugin is looked for beside the executable, in plugins/, ../plugins/ and ../lib/tautline/.
 /// @param[in] file    name of the library file, e.g. tautline_gmsh.so

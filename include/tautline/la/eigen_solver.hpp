@@ -14,8 +14,10 @@ struct EigenPairs {
   std::vector<double> residuals;    ///< |K x - lambda M x| / |K x|
 };
 
-/// @brief The `count` eigenvalues of K x = lambda M x nearest above `shift` in magnitude, smallest first; K symmetric, M positive
-/// semidefinite. Collective.
+/// @brief The `count` eigenvalues of K x = lambda M x nearest to `shift`, smallest first; K symmetric, M positive
+/// semidefinite, its pattern within that of K. Collective.
+///
+/// That none is left out, multiple ones least of all, is shown by the inertia of K - s M on either side of those found.
 /// @throws LibraryError if fewer converge
 EigenPairs solve_vibration(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count, double shift = 0);
 

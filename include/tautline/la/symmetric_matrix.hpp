@@ -34,6 +34,8 @@ class SymmetricMatrix {
   void multiply(const Vector& x, Vector& y) const;
   /// A copy with `value` added to the diagonal.
   SymmetricMatrix shifted(double value) const;
+  /// A copy with `factor` times `other` added, whose pattern must lie within this one's.
+  SymmetricMatrix plus(double factor, const SymmetricMatrix& other) const;
   double norm_of_diagonal() const;
 
  private:

@@ -1,10 +1,9 @@
 #pragma once
 /// @file
-/// What the gmsh plugin offers to the program. Both are built by the same compiler from the same headers, so the
-/// structs cross as they are; exceptions do not.
+/// What the gmsh plugin offers to the program. Both are built by the same compiler from the same headers, so
+/// the structs cross as they are; exceptions do not.
 
 #include <string>
-
 #include <tautline/mesh/imported_mesh.hpp>
 
 namespace tautline::mesh::gmsh_plugin {
@@ -18,7 +17,8 @@ enum class Outcome {
 constexpr auto file = "tautline_gmsh.so";
 constexpr auto symbol = "tautline_read_gmsh";
 constexpr auto remedy =
-    "meshes are read by gmsh: build with TAUTLINE_WITH_GMSH=ON (apt-get install libgmsh-dev) or describe the structure inline";
+    "meshes are read by gmsh: build with TAUTLINE_WITH_GMSH=ON (apt-get install libgmsh-dev) or describe the "
+    "structure inline";
 
 }  // namespace tautline::mesh::gmsh_plugin
 

@@ -1,9 +1,9 @@
+#include <fmt/format.h>
+#include <gmsh.h>
+
 #include <exception>
 #include <stdexcept>
 #include <unordered_map>
-
-#include <fmt/format.h>
-#include <gmsh.h>
 
 #include "mesh/gmsh/plugin.hpp"
 
@@ -54,10 +54,11 @@ void require_supported(const std::string& group, int type) {
   int dimension = 0, order = 0, n_nodes = 0, n_primary = 0;
   std::vector<double> local;
   gmsh::model::mesh::getElementProperties(type, name, dimension, order, n_nodes, local, n_primary);
-  throw Unsuitable(fmt::format(
-      "has cells of the kind \"{}\" (dimension {}, order {}) in its physical group \"{}\"; there are elements for points, lines, "
-      "triangles and quadrilaterals of order 1 only{}",
-      name, dimension, order, group, order > 1 ? ": set Mesh.ElementOrder = 1 in gmsh" : ""));
+  throw Unsuitable(
+      fmt::format("has cells of the kind \"{}\" (dimension {}, order {}) in its physical group \"{}\"; there "
+                  "are elements for points, lines, "
+                  "triangles and quadrilaterals of order 1 only{}",
+                  name, dimension, order, group, order > 1 ? ": set Mesh.ElementOrder = 1 in gmsh" : ""));
 }
 
 void add_quadrilateral(const Points& x, const std::array<int, 4>& q, CellGroup& group) {
@@ -77,7 +78,8 @@ void add_cells(const Nodes& nodes, int type, const std::vector<std::size_t>& tag
   else if (type == line)
     for (std::size_t i = 0; i + 1 < tags.size(); i += 2) group.lines.push_back({at(i), at(i + 1)});
   else if (type == triangle)
-    for (std::size_t i = 0; i + 2 < tags.size(); i += 3) group.triangles.push_back({at(i), at(i + 1), at(i + 2)});
+    for (std::size_t i = 0; i + 2 < tags.size(); i += 3)
+      group.triangles.push_back({at(i), at(i + 1), at(i + 2)});
   else
     for (std::size_t i = 0; i + 3 < tags.size(); i += 4)
       add_quadrilateral(nodes.positions, {at(i), at(i + 1), at(i + 2), at(i + 3)}, group);
@@ -104,8 +106,11 @@ std::map<std::string, CellGroup> read_groups(const Nodes& nodes) {
     }
   }
   if (groups.empty())
-    throw Unsuitable(physical.empty() ? "has no physical group: name its points, lines and surfaces in gmsh, e.g. Physical Surface(\"cloth\") = {1};"
-                                      : "has no named physical group with cells: name its groups in gmsh and mesh it, e.g. gmsh -2");
+    throw Unsuitable(
+        physical.empty()
+            ? "has no physical group: name its points, lines and surfaces in gmsh, e.g. Physical "
+              "Surface(\"cloth\") = {1};"
+            : "has no named physical group with cells: name its groups in gmsh and mesh it, e.g. gmsh -2");
   return groups;
 }
 
