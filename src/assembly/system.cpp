@@ -65,10 +65,10 @@ double bounding_size(const model::Model& model) {
 System::System(model::Model model)
     : model_(std::move(model)), map_(make_dof_map(model_)), state_(model::State::reference(model_)), committed_(state_),
       size_(bounding_size(model_)) {
-  const int rank = la::rank();
+  const auto own = [&](int node) { return map_.node_rank[node] == la::rank(); };
   const auto mine = [&](const auto& elements, std::vector<int>& indices) {
     for (int i = 0; i < static_cast<int>(elements.size()); ++i)
-      if (map_.node_rank[elements[i].nodes[0]] == rank) indices.push_back(i);
+      if (std::any_of(elements[i].nodes.begin(), elements[i].nodes.end(), own)) indices.push_back(i);
   };
   mine(model_.cables, share_.cables);
   mine(model_.beams, share_.beams);
@@ -157,10 +157,16 @@ void System::add_internal(const model::State& state, std::vector<double>& force,
   }
 }
 
+std::span<const double> System::own_part(const std::vector<double>& all) const {
+  return std::span(all).subspan(static_cast<std::size_t>(3 * map_.layout.first), static_cast<std::size_t>(3 * map_.layout.local));
+}
+
 std::vector<double> System::internal_forces() const {
   std::vector<double> force(held_.size(), 0.0), magnitude(held_.size(), 0.0);
   add_internal(state_, force, magnitude);
-  la::sum_over_ranks(force);
+  la::Vector own(map_.layout);
+  own.write(own_part(force));
+  own.gather(force);
   return force;
 }
 
@@ -179,7 +185,7 @@ std::vector<double> System::dead_loads(const Boundary& boundary) const {
   std::vector<double> field(held_.size(), 0.0), all;
   for (const int block : map_.displacement_block)
     for (int c = 0; c < 3; ++c) field[3 * block + c] = boundary.acceleration[c];
-  uniform.write(std::span(field).subspan(3 * map_.layout.first, 3 * map_.layout.local));
+  uniform.write(own_part(field));
   assemble_mass(std::vector<bool>(held_.size(), false)).multiply(uniform, inertia);
   inertia.gather(all);
   for (std::size_t i = 0; i < force.size(); ++i) force[i] += all[i];
@@ -206,11 +212,11 @@ void System::residual(const la::Vector& x, la::Vector& f) {
   std::vector<double> force(held_.size(), 0.0);
   magnitude_.assign(held_.size(), 0.0);
   add_internal(moved(all), force, magnitude_);
-  if (la::rank() == 0)
-    for (std::size_t i = 0; i < force.size(); ++i) force[i] -= (1 - lambda_) * start_force_[i] + lambda_ * end_force_[i];
-  for (std::size_t i = 0; i < force.size(); ++i)
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    force[i] -= (1 - lambda_) * start_force_[i] + lambda_ * end_force_[i];
     if (held_[i]) force[i] = 0;
-  f.assign_sum(force);
+  }
+  f.write(own_part(force));
 }
 
 void System::accept(const la::Vector& x) {
@@ -291,15 +297,13 @@ analysis::ResidualNorms System::norms(const la::Vector& f) const {
   std::vector<double> own(static_cast<std::size_t>(3 * map_.layout.local));
   f.read(own);
   double sums[4] = {0, 0, 0, 0};
-  std::vector<double> magnitude = magnitude_;
-  la::sum_over_ranks(magnitude);
   for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
     if (map_.node_rank[node] != la::rank()) continue;
     const auto add = [&](int block, double& residual, double& reference) {
       for (int c = 0; c < 3; ++c) {
         const double value = own[static_cast<std::size_t>(3 * (block - map_.layout.first) + c)];
         residual += value * value;
-        reference += std::pow(magnitude[3 * block + c], 2);
+        reference += std::pow(magnitude_[3 * block + c], 2);
       }
     };
     add(map_.displacement_block[node], sums[0], sums[2]);

@@ -1,5 +1,6 @@
 #include <tautline/la/symmetric_matrix.hpp>
 
+#include <array>
 #include <utility>
 
 #include <petscmat.h>
@@ -8,7 +9,7 @@
 
 namespace tautline::la {
 
-SymmetricMatrix::SymmetricMatrix(const BlockLayout& layout, const BlockPattern& pattern) {
+SymmetricMatrix::SymmetricMatrix(const BlockLayout& layout, const BlockPattern& pattern) : layout_(layout) {
   check(MatCreate(PETSC_COMM_WORLD, &mat_), "MatCreate");
   check(MatSetSizes(mat_, 3 * layout.local, 3 * layout.local, 3 * layout.total, 3 * layout.total), "MatSetSizes");
   check(MatSetBlockSize(mat_, 3), "MatSetBlockSize");
@@ -17,6 +18,7 @@ SymmetricMatrix::SymmetricMatrix(const BlockLayout& layout, const BlockPattern& 
   check(MatMPISBAIJSetPreallocation(mat_, 3, 0, pattern.diagonal.data(), 0, pattern.off_diagonal.data()),
         "MatMPISBAIJSetPreallocation");
   check(MatSetOption(mat_, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE), "MatSetOption");
+  check(MatSetOption(mat_, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE), "MatSetOption");
   check(MatSetOption(mat_, MAT_SYMMETRIC, PETSC_TRUE), "MatSetOption");
   check(MatSetOption(mat_, MAT_SYMMETRY_ETERNAL, PETSC_TRUE), "MatSetOption");
 }
@@ -25,10 +27,12 @@ SymmetricMatrix::~SymmetricMatrix() {
   if (mat_ != nullptr) MatDestroy(&mat_);
 }
 
-SymmetricMatrix::SymmetricMatrix(SymmetricMatrix&& other) noexcept : mat_(std::exchange(other.mat_, nullptr)) {}
+SymmetricMatrix::SymmetricMatrix(SymmetricMatrix&& other) noexcept
+    : mat_(std::exchange(other.mat_, nullptr)), layout_(other.layout_) {}
 
 SymmetricMatrix& SymmetricMatrix::operator=(SymmetricMatrix&& other) noexcept {
   std::swap(mat_, other.mat_);
+  std::swap(layout_, other.layout_);
   return *this;
 }
 
@@ -36,7 +40,12 @@ void SymmetricMatrix::set_zero() { check(MatZeroEntries(mat_), "MatZeroEntries")
 
 void SymmetricMatrix::add(std::span<const int> blocks, const double* values) {
   const int n = static_cast<int>(blocks.size());
-  check(MatSetValuesBlocked(mat_, n, blocks.data(), n, blocks.data(), values, ADD_VALUES), "MatSetValuesBlocked");
+  std::array<int, 8> rows{};  // PETSc passes over negative rows
+  for (int i = 0; i < n; ++i) {
+    const bool own = blocks[i] >= layout_.first && blocks[i] < layout_.first + layout_.local;
+    rows[i] = own ? blocks[i] : -1;
+  }
+  check(MatSetValuesBlocked(mat_, n, rows.data(), n, blocks.data(), values, ADD_VALUES), "MatSetValuesBlocked");
 }
 
 void SymmetricMatrix::finish() {
@@ -46,8 +55,29 @@ void SymmetricMatrix::finish() {
 
 void SymmetricMatrix::multiply(const Vector& x, Vector& y) const { check(MatMult(mat_, x.handle(), y.handle()), "MatMult"); }
 
+std::vector<long double> SymmetricMatrix::multiply_extended(const std::vector<double>& x) const {
+  std::vector<long double> y(x.size(), 0.0L);
+  check(MatGetRowUpperTriangular(mat_), "MatGetRowUpperTriangular");
+  for (int row = 3 * layout_.first; row < 3 * (layout_.first + layout_.local); ++row) {
+    PetscInt n = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    check(MatGetRow(mat_, row, &n, &columns, &values), "MatGetRow");
+    for (PetscInt k = 0; k < n; ++k) {
+      if (columns[k] < row) continue;
+      y[row] += static_cast<long double>(values[k]) * x[columns[k]];
+      if (columns[k] > row) y[columns[k]] += static_cast<long double>(values[k]) * x[row];
+    }
+    check(MatRestoreRow(mat_, row, &n, &columns, &values), "MatRestoreRow");
+  }
+  check(MatRestoreRowUpperTriangular(mat_), "MatRestoreRowUpperTriangular");
+  MPI_Allreduce(MPI_IN_PLACE, y.data(), static_cast<int>(y.size()), MPI_LONG_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  return y;
+}
+
 SymmetricMatrix SymmetricMatrix::shifted(double value) const {
   SymmetricMatrix result;
+  result.layout_ = layout_;
   check(MatDuplicate(mat_, MAT_COPY_VALUES, &result.mat_), "MatDuplicate");
   check(MatShift(result.mat_, value), "MatShift");
   return result;
@@ -55,6 +85,7 @@ SymmetricMatrix SymmetricMatrix::shifted(double value) const {
 
 SymmetricMatrix SymmetricMatrix::plus(double factor, const SymmetricMatrix& other) const {
   SymmetricMatrix result;
+  result.layout_ = layout_;
   check(MatDuplicate(mat_, MAT_COPY_VALUES, &result.mat_), "MatDuplicate");
   check(MatAXPY(result.mat_, factor, other.mat_, SUBSET_NONZERO_PATTERN), "MatAXPY");
   return result;

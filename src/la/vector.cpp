@@ -19,6 +19,12 @@ Vector::Vector(const BlockLayout& layout) {
 
 Vector::Vector(_p_Vec* borrowed) : vec_(borrowed), owned_(false) {}
 
+Vector Vector::like(const Vector& other) {
+  ::Vec copy = nullptr;
+  check(VecDuplicate(other.vec_, &copy), "VecDuplicate");
+  return adopt(copy);
+}
+
 Vector Vector::adopt(_p_Vec* handle) {
   Vector result(handle);
   result.owned_ = true;
@@ -101,17 +107,6 @@ void Vector::gather(std::vector<double>& all) const {
   MPI_Allgatherv(array, local_size(), MPI_DOUBLE, all.data(), shares.counts.data(), shares.starts.data(), MPI_DOUBLE,
                  PETSC_COMM_WORLD);
   check(VecRestoreArrayRead(vec_, &array), "VecRestoreArrayRead");
-}
-
-void Vector::assign_sum(std::vector<double>& all) {
-  const Shares shares = shares_of(vec_);
-  PetscScalar* array = nullptr;
-  check(VecGetArrayWrite(vec_, &array), "VecGetArrayWrite");
-  if (shares.counts.size() == 1)
-    std::copy(all.begin(), all.end(), array);
-  else
-    MPI_Reduce_scatter(all.data(), array, shares.counts.data(), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
-  check(VecRestoreArrayWrite(vec_, &array), "VecRestoreArrayWrite");
 }
 
 }  // namespace tautline::la

@@ -19,8 +19,8 @@ Json newton_table(const analysis::PathSummary& path) {
   for (const auto& point : path.points) {
     Json rows = Json::array();
     for (const auto& iteration : point.newton.iterations)
-      rows.push_back(Json::array({above_rounding(iteration.norms.force, 1e-10 * iteration.norms.reference_force),
-                                  above_rounding(iteration.increment, 1e-12)}));
+      rows.push_back(Json::array({rounded(above_rounding(iteration.norms.force, 1e-10 * iteration.norms.reference_force)),
+                                  rounded(above_rounding(iteration.increment, 1e-12))}));
     table.push_back({{"lambda", point.lambda}, {"force_and_increment", rows}});
   }
   return table;

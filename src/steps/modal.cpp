@@ -34,15 +34,24 @@ std::vector<la::Vector> rigid_motions(const assembly::System& system) {
   return motions;
 }
 
-/// (r^T M phi)^2 for modes normalised to phi^T M phi = 1: the mass that takes part [kg], [kg m^2].
+/// (r^T M phi)^2 for modes normalised to phi^T M phi = 1: the mass that takes part [kg], [kg m^2]. What symmetry makes zero comes
+/// out as rounding; below a millionth of the whole it is reported as zero.
 Json effective_masses(const assembly::System& system, const la::SymmetricMatrix& mass, const la::EigenPairs& pairs) {
   const auto motions = rigid_motions(system);
   Json table = Json::array();
   la::Vector product(system.layout());
+  std::vector<double> whole;
+  for (const auto& motion : motions) {
+    mass.multiply(motion, product);
+    whole.push_back(motion.dot(product));
+  }
   for (const auto& mode : pairs.vectors) {
     mass.multiply(mode, product);
     Json row = Json::array();
-    for (const auto& motion : motions) row.push_back(above_rounding(std::pow(motion.dot(product), 2), 1e-9));
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      const double share = std::pow(motions[k].dot(product), 2);
+      row.push_back(share > 1e-6 * whole[k] ? share : 0.0);
+    }
     table.push_back(row);
   }
   return table;
@@ -112,7 +121,7 @@ Json run_step(Context& context, const ModalOptions& options) {
     const double eigenvalue = pairs.values[i];
     const double frequency = std::copysign(std::sqrt(std::abs(eigenvalue)), eigenvalue) / (2 * std::numbers::pi);
     entry["frequencies"].push_back(frequency);
-    entry["residuals"].push_back(above_rounding(pairs.residuals[i], 1e-6));
+    entry["residuals"].push_back(above_rounding(pairs.residuals[i], 1e-12));
     const Points shape = display_shape(system, pairs.vectors[i]);
     output::Field field{fmt::format("mode {} ({:.4g} Hz)", i + 1, frequency), 3, {}};
     for (const auto& v : shape) field.values.insert(field.values.end(), v.begin(), v.end());

@@ -11,6 +11,8 @@ namespace tautline::steps {
 
 double above_rounding(double value, double floor) { return std::max(value, floor); }
 
+double rounded(double value) { return std::stod(fmt::format("{:.3g}", value)); }
+
 Json groups_json(const std::map<std::string, model::GroupSummary>& groups) {
   Json result = Json::object();
   for (const auto& [name, g] : groups) {

@@ -16,6 +16,9 @@ namespace tautline::steps {
 /// depend on the number of ranks.
 double above_rounding(double value, double floor);
 
+/// A figure of which only the size matters, to three digits.
+double rounded(double value);
+
 Json groups_json(const std::map<std::string, model::GroupSummary>& groups);
 Json surface_json(const reflector::SurfaceError& error);
 Json model_json(const model::Model& model, int dofs);

@@ -222,10 +222,10 @@ TEST(Cantilever, FollowsTheElastica) {
 }
 
 TEST(Cantilever, RollsIntoACircleUnderATipMoment) {
-  // A moment pi E I / L bends it to a half circle of radius L / pi (exact for an inextensible beam).
+  // A moment pi E I / L bends it to a half circle of radius L / pi. No force acts, so that any E A will do.
   const double length = 2, bending = 40, moment = std::numbers::pi * bending / length;
   auto section = slender();
-  section.axial_stiffness = 1e7;  // radius of gyration L / 1000
+  section.axial_stiffness = 1e5;
   System system(cantilever(16, length, section));
   solve(system, clamped_root(load(16, Vec3::Zero(), {0, moment, 0})));
   const Vec3 tip = system.model().nodes[16] + system.state().displacement[16];

@@ -3,6 +3,7 @@
 // vectors.
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -31,12 +32,20 @@ inline BlockPattern full_pattern(const BlockLayout& layout) {
   return pattern;
 }
 
-/// Writes a dense matrix into `matrix`; the first rank adds everything, other ranks' rows too.
+/// Writes a dense matrix into `matrix`, as elements of one block and of two.
 inline void fill(SymmetricMatrix& matrix, const MatX& dense) {
   matrix.set_zero();
-  std::vector<int> blocks(static_cast<std::size_t>(dense.rows() / 3));
-  for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i] = static_cast<int>(i);
-  if (rank() == 0) matrix.add(blocks, dense.data());
+  const int blocks = static_cast<int>(dense.rows()) / 3;
+  for (int i = 0; i < blocks; ++i) {
+    const Mat3 own = dense.block<3, 3>(3 * i, 3 * i);
+    matrix.add(std::array{i}, own.data());
+    for (int j = 0; j < i; ++j) {
+      Mat<6> pair = Mat<6>::Zero();
+      pair.topRightCorner<3, 3>() = dense.block<3, 3>(3 * i, 3 * j);
+      pair.bottomLeftCorner<3, 3>() = dense.block<3, 3>(3 * j, 3 * i);
+      matrix.add(std::array{i, j}, pair.data());
+    }
+  }
   matrix.finish();
 }
 

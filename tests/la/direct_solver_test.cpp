@@ -162,15 +162,18 @@ TEST(SymmetricMatrix, HasAShiftedCopyAndTheLargestDiagonalEntry) {
   EXPECT_LT((dense_of(y) - dense * x).norm(), 1e-13 * x.norm()) << "the matrix itself stays as it is";
 }
 
-TEST(Vector, AddsTheShareOfEveryRankAndGathersItEverywhere) {
-  Vector vector(layout_of(5));
-  std::vector<double> share(15);
-  for (std::size_t i = 0; i < share.size(); ++i) share[i] = static_cast<double>(i) * (rank() + 1);
-  vector.assign_sum(share);
-  const VecX all = dense_of(vector);
-  for (int i = 0; i < 15; ++i) EXPECT_DOUBLE_EQ(all[i], i * size() * (size() + 1) / 2.0);
-  EXPECT_DOUBLE_EQ(vector.norm(), all.norm());
-  EXPECT_DOUBLE_EQ(vector.dot(vector), all.squaredNorm());
+TEST(Vector, KeepsTheOwnPartAndGathersAllEverywhere) {
+  const VecX dense = some_load(15);
+  const Vector vector = vector_of(dense);
+  EXPECT_EQ(dense_of(vector), dense);
+  const auto layout = layout_of(5);
+  EXPECT_EQ(vector.local_size(), 3 * layout.local);
+  std::vector<double> own(static_cast<std::size_t>(3 * layout.local));
+  vector.read(own);
+  for (std::size_t i = 0; i < own.size(); ++i)
+    EXPECT_EQ(own[i], dense[3 * layout.first + static_cast<int>(i)]);
+  EXPECT_NEAR(vector.norm(), dense.norm(), 1e-14 * dense.norm());
+  EXPECT_NEAR(vector.dot(vector), dense.squaredNorm(), 1e-14 * dense.squaredNorm());
 }
 
 }  // namespace

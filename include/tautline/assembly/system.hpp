@@ -3,6 +3,7 @@
 /// The model as a nonlinear problem: gather -> kernel -> scatter on every rank's share of the elements. Owns the parallel layout.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -80,13 +81,16 @@ class System : public analysis::PathProblem {
 
  private:
   struct Share {
-    std::vector<int> cables, beams, membranes;
+    std::vector<int> cables, beams, membranes;  ///< those that touch a node of this rank
   };
-  /// Internal forces of the owned elements added into `force`, and the sums of their magnitudes into `magnitude`.
+  /// Internal forces of the elements that touch this rank's nodes added into `force`, and the sums of their magnitudes into
+  /// `magnitude`; complete in the rank's own entries. Elements come in the model's order, so that every entry is the same number
+  /// however the nodes are dealt out.
   void add_internal(const model::State& state, std::vector<double>& force, std::vector<double>& magnitude) const;
   model::State moved(const std::vector<double>& x) const;
   std::vector<double> dead_loads(const Boundary& boundary) const;
   std::vector<double> internal_forces() const;
+  std::span<const double> own_part(const std::vector<double>& all) const;
   la::SymmetricMatrix assemble_mass(const std::vector<bool>& without) const;
   void hold(const std::vector<model::Support>& supports);
   void apply_strains();

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include <tautline/la/direct_solver.hpp>
 #include <tautline/la/symmetric_matrix.hpp>
 
 namespace tautline::la {
@@ -11,7 +12,8 @@ namespace tautline::la {
 struct EigenPairs {
   std::vector<double> values;
   std::vector<Vector> vectors;      ///< normalised to x^T M x = 1
-  std::vector<double> residuals;    ///< |K x - lambda M x| / |K x|
+  std::vector<double> residuals;    ///< |K x - lambda M x| / (|diagonal of K|_max |x|)
+  SolverTimings timings;            ///< of the shift-invert solver
 };
 
 /// @brief The `count` eigenvalues of K x = lambda M x nearest to `shift`, smallest first; K symmetric, M positive

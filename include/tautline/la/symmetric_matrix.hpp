@@ -27,9 +27,12 @@ class SymmetricMatrix {
 
   _p_Mat* handle() const noexcept { return mat_; }
   void set_zero();
-  /// Adds a dense symmetric element matrix; `values` is 3n x 3n for n = blocks.size(). Any rank may add anywhere.
+  /// Adds the rows of a dense symmetric element matrix that this rank owns; `values` is 3n x 3n for n = blocks.size(). Every rank
+  /// that owns one of the blocks must add the element.
   void add(std::span<const int> blocks, const double* values);
   void finish();  ///< collective; after the last add
+  /// A x in extended precision, whole on every rank: for results that are small differences of large terms. Collective.
+  std::vector<long double> multiply_extended(const std::vector<double>& x) const;
   /// y = A x
   void multiply(const Vector& x, Vector& y) const;
   /// A copy with `value` added to the diagonal.
@@ -41,6 +44,7 @@ class SymmetricMatrix {
  private:
   SymmetricMatrix() = default;
   _p_Mat* mat_ = nullptr;
+  BlockLayout layout_;
 };
 
 }  // namespace tautline::la

@@ -20,6 +20,7 @@ class Vector {
  public:
   explicit Vector(const BlockLayout& layout);
   explicit Vector(_p_Vec* borrowed);     ///< a view that does not own
+  static Vector like(const Vector& other);
   static Vector adopt(_p_Vec* handle);  ///< takes ownership
   ~Vector();
   Vector(Vector&& other) noexcept;
@@ -37,8 +38,6 @@ class Vector {
   void write(std::span<const double> local);
   /// All entries on every rank. Collective.
   void gather(std::vector<double>& all) const;
-  /// Adds the ranks' full-length contributions and keeps the own range. Collective; `all` is used as scratch.
-  void assign_sum(std::vector<double>& all);
 
  private:
   _p_Vec* vec_ = nullptr;

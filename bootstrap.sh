@@ -1,0 +1,124 @@
+#!/usr/bin/env bash
+# From a clone on Debian 12 to a run or a test: installs what is missing, builds, goes.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
+build=$root/build/release
+
+# Every Debian 12 package the program stands on. The tests need the second line besides.
+program_packages=(
+  g++ cmake ninja-build pkg-config                                  # tools
+  libpetsc-real-dev libslepc-real3.18-dev openmpi-bin               # solvers, MPI
+  libopenblas0-serial                                               # MUMPS is four times slower with the reference BLAS
+  libmetis-dev libeigen3-dev libfmt-dev                             # partition, small matrices, text
+  libyaml-cpp-dev nlohmann-json3-dev libcli11-dev                   # deck, results, command line
+  libvtk9-dev libegl-dev libgl1-mesa-dri                            # fields and pictures, without a display
+  libgmsh-dev                                                       # meshes
+)
+test_packages=(libgtest-dev libbenchmark-dev)
+
+usage() {
+  cat <<'TEXT'
+usage: ./bootstrap.sh run DECK [options of `tautline run`]   install, build, run a deck
+       ./bootstrap.sh test [options of ctest]                install, build everything, run the tests
+       ./bootstrap.sh build                                  install and build only
+
+Leaves the program at build/release/tautline. Calls after the first one go straight to work.
+TAUTLINE_SKIP_PACKAGES=1 in the environment leaves the packages alone (other systems, or libraries of your own).
+TEXT
+}
+
+say() { printf 'bootstrap: %s\n' "$*" >&2; }
+fail() { say "$*"; exit 1; }
+
+# Those of the packages named that are not installed.
+missing_of() {
+  local installed
+  installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null | sed -n 's/^installed //p') || true
+  comm -23 <(printf '%s\n' "$@" | sort -u) <(printf '%s\n' "$installed" | sort -u)
+}
+
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then
+    env DEBIAN_FRONTEND=noninteractive "$@"
+  elif command -v sudo >/dev/null; then
+    sudo env DEBIAN_FRONTEND=noninteractive "$@"
+  else
+    fail "installing needs root and there is no sudo. As root: apt-get install --no-install-recommends ${packages[*]}"
+  fi
+}
+
+check_system() {
+  command -v apt-get >/dev/null && command -v dpkg-query >/dev/null && return
+  fail "this is no Debian. Install these (Debian's names) by your own means, then call again with
+           TAUTLINE_SKIP_PACKAGES=1: ${packages[*]}
+           PETSc must be real and double with MUMPS; CMake at least 3.25; VTK 9.1; g++ 12 or another compiler of C++20."
+}
+
+install_packages() {
+  local packages=("$@") missing
+  [ "${TAUTLINE_SKIP_PACKAGES:-}" = 1 ] && return
+  check_system
+  mapfile -t missing < <(missing_of "${packages[@]}")
+  [ ${#missing[@]} -eq 0 ] && return
+  grep -qs 'bookworm' /etc/os-release || say "tried on Debian 12 (bookworm) only; going on with the same package names"
+  say "installing ${#missing[@]} packages and what they need: ${missing[*]}"
+  as_root apt-get update -q </dev/null || fail "apt-get update failed: is there a network?"
+  as_root apt-get install -y -q --no-install-recommends "${missing[@]}" </dev/null || fail "apt-get could not install: ${missing[*]}"
+}
+
+cached() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt" 2>/dev/null; }
+
+# configure TESTS: makes the build directory ready. TESTS is ON, or OFF where they may be left out.
+configure() {
+  local tests=$1 fresh=()
+  if [ -f "$build/build.ninja" ] && [ "$(cached CMAKE_HOME_DIRECTORY)" = "$root" ]; then
+    if [ "$tests" = OFF ] || [ "$(cached TAUTLINE_BUILD_TESTS)" = ON ]; then return; fi
+  elif [ -f "$build/CMakeCache.txt" ]; then
+    fresh=(--fresh)
+  fi
+  say "configuring $build"
+  (cd "$root" && cmake --preset release "${fresh[@]}" -DTAUTLINE_BUILD_TESTS="$tests")
+}
+
+# As many jobs as there are processors, but 1.2 GB of memory for each.
+jobs() {
+  local memory
+  memory=$(awk '/^MemAvailable/ {print int($2 / 1.2e6)}' /proc/meminfo 2>/dev/null || true)
+  awk -v n="$(nproc)" -v m="${memory:-1}" 'BEGIN {j = m < n ? m : n; print j < 1 ? 1 : j}'
+}
+
+# Output of the compiler only if there is something to do, so that `run` can be piped.
+compile() {
+  say "building with $(jobs) jobs"
+  cmake --build "$build" -j "$(jobs)" "$@" >&2
+}
+
+build_program() {
+  install_packages "${program_packages[@]}"
+  configure OFF >&2
+  compile --target tautline
+}
+
+case ${1:-} in
+  run)
+    shift
+    [ $# -gt 0 ] || { usage >&2; exit 2; }
+    build_program
+    exec "$build/tautline" run "$@"
+    ;;
+  build)
+    build_program
+    say "the program is $build/tautline"
+    ;;
+  test)
+    shift
+    install_packages "${program_packages[@]}" "${test_packages[@]}"
+    configure ON >&2
+    compile
+    cd "$root"
+    exec ctest --preset release -j "$(nproc)" "$@"
+    ;;
+  -h | --help | help) usage ;;
+  *) usage >&2; exit 2 ;;
+esac
