@@ -5,8 +5,8 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 build=$root/build/release
 
-# Every Debian 12 package the program stands on. The tests need the second line besides.
-program_packages=(
+# Every Debian 12 package the program and its tests stand on.
+packages=(
   g++ cmake ninja-build pkg-config                                  # tools
   libpetsc-real-dev libslepc-real3.18-dev openmpi-bin               # solvers, MPI
   libopenblas0-serial                                               # MUMPS is four times slower with the reference BLAS
@@ -14,8 +14,8 @@ program_packages=(
   libyaml-cpp-dev nlohmann-json3-dev libcli11-dev                   # deck, results, command line
   libvtk9-dev libegl-dev libgl1-mesa-dri                            # fields and pictures, without a display
   libgmsh-dev                                                       # meshes
+  libgtest-dev libbenchmark-dev                                     # tests
 )
-test_packages=(libgtest-dev libbenchmark-dev)
 
 usage() {
   cat <<'TEXT'
@@ -31,11 +31,10 @@ TEXT
 say() { printf 'bootstrap: %s\n' "$*" >&2; }
 fail() { say "$*"; exit 1; }
 
-# Those of the packages named that are not installed.
-missing_of() {
-  local installed
-  installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null | sed -n 's/^installed //p') || true
-  comm -23 <(printf '%s\n' "$@" | sort -u) <(printf '%s\n' "$installed" | sort -u)
+# Those packages that are not installed.
+missing_packages() {
+  comm -13 <(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${packages[@]}" 2>/dev/null | sed -n 's/^installed //p' | sort -u) \
+           <(printf '%s\n' "${packages[@]}" | sort -u)
 }
 
 as_root() {
@@ -56,68 +55,63 @@ check_system() {
 }
 
 install_packages() {
-  local packages=("$@") missing
+  local missing
   [ "${TAUTLINE_SKIP_PACKAGES:-}" = 1 ] && return
   check_system
-  mapfile -t missing < <(missing_of "${packages[@]}")
+  mapfile -t missing < <(missing_packages)
   [ ${#missing[@]} -eq 0 ] && return
   grep -qs 'bookworm' /etc/os-release || say "tried on Debian 12 (bookworm) only; going on with the same package names"
   say "installing ${#missing[@]} packages and what they need: ${missing[*]}"
-  as_root apt-get update -q </dev/null || fail "apt-get update failed: is there a network?"
-  as_root apt-get install -y -q --no-install-recommends "${missing[@]}" </dev/null || fail "apt-get could not install: ${missing[*]}"
+  as_root apt-get update -q </dev/null >&2 || fail "apt-get update failed: is there a network?"
+  as_root apt-get install -y -q --no-install-recommends "${missing[@]}" </dev/null >&2 ||
+    fail "apt-get could not install: ${missing[*]}"
 }
 
-cached() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt" 2>/dev/null; }
-
-# configure TESTS: makes the build directory ready. TESTS is ON, or OFF where they may be left out.
+# Makes the build directory ready, once; ninja looks after it from then on. A clone that was moved starts afresh.
 configure() {
-  local tests=$1 fresh=()
-  if [ -f "$build/build.ninja" ] && [ "$(cached CMAKE_HOME_DIRECTORY)" = "$root" ]; then
-    if [ "$tests" = OFF ] || [ "$(cached TAUTLINE_BUILD_TESTS)" = ON ]; then return; fi
-  elif [ -f "$build/CMakeCache.txt" ]; then
-    fresh=(--fresh)
+  local fresh=()
+  if [ -f "$build/CMakeCache.txt" ]; then
+    if ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$build/CMakeCache.txt"; then
+      fresh=(--fresh)
+    elif [ -f "$build/build.ninja" ]; then
+      return
+    fi
   fi
   say "configuring $build"
-  (cd "$root" && cmake --preset release "${fresh[@]}" -DTAUTLINE_BUILD_TESTS="$tests")
+  (cd "$root" && cmake --preset release "${fresh[@]}") >&2
 }
 
-# As many jobs as there are processors, but 1.2 GB of memory for each.
+# As many jobs as there are processors, if there is 1.2 GB of memory for each.
 jobs() {
   local memory
   memory=$(awk '/^MemAvailable/ {print int($2 / 1.2e6)}' /proc/meminfo 2>/dev/null || true)
   awk -v n="$(nproc)" -v m="${memory:-1}" 'BEGIN {j = m < n ? m : n; print j < 1 ? 1 : j}'
 }
 
-# Output of the compiler only if there is something to do, so that `run` can be piped.
+# compile [TARGET]: what is out of date. Everything on stderr, so that the output of `run` can be piped.
 compile() {
+  install_packages
+  configure
   say "building with $(jobs) jobs"
-  cmake --build "$build" -j "$(jobs)" "$@" >&2
-}
-
-build_program() {
-  install_packages "${program_packages[@]}"
-  configure OFF >&2
-  compile --target tautline
+  cmake --build "$build" -j "$(jobs)" ${1:+--target "$1"} >&2
 }
 
 case ${1:-} in
   run)
     shift
     [ $# -gt 0 ] || { usage >&2; exit 2; }
-    build_program
+    compile tautline
     exec "$build/tautline" run "$@"
     ;;
   build)
-    build_program
+    compile tautline
     say "the program is $build/tautline"
     ;;
   test)
     shift
-    install_packages "${program_packages[@]}" "${test_packages[@]}"
-    configure ON >&2
     compile
     cd "$root"
-    exec ctest --preset release -j "$(nproc)" "$@"
+    exec ctest --preset release --no-tests=error -j "$(nproc)" "$@"
     ;;
   -h | --help | help) usage ;;
   *) usage >&2; exit 2 ;;

@@ -27,11 +27,12 @@ double relative_residual(const ResidualNorms& norms) {
 /// A step is taken whole unless the energy still falls, or has begun to rise, too steeply at its end; then a secant
 /// search looks for the point where the slope along it has mostly gone (Crisfield 1991, sec. 9.2).
 double search_step(const std::function<double(double)>& slope, double slope_0) {
-  constexpr double slack = 0.8, growth = 1e3;
+  constexpr double slack = 0.8, growth = 1e8;  // a slender beam's full step may well overshoot by 1e6 and still be the best
   constexpr int most = 6;
   double left = 0, slope_left = slope_0, right = 1, slope_right = slope(1);
-  if (!std::isfinite(slope_right)) slope_right = -std::abs(slope_0) * growth * growth;
-  if (std::abs(slope_right) <= growth * std::abs(slope_0) || slope_right * slope_0 > 0) return 1;
+  if (!std::isfinite(slope_right))
+    slope_right = -slope_0 * growth * growth;
+  else if (std::abs(slope_right) <= growth * std::abs(slope_0) || slope_right * slope_0 > 0) return 1;
   double t = 1;
   for (int i = 0; i < most; ++i) {
     t = left + (right - left) * std::clamp(slope_left / (slope_left - slope_right), 0.1, 0.9);
@@ -42,7 +43,7 @@ double search_step(const std::function<double(double)>& slope, double slope_0) {
       slope_left = here;
     } else {
       right = t;
-      slope_right = std::isfinite(here) ? here : -std::abs(slope_0) * growth * growth;
+      slope_right = std::isfinite(here) ? here : -slope_0 * growth * growth;
     }
   }
   return t;

@@ -293,6 +293,45 @@ la::SymmetricMatrix System::assemble_mass(const std::vector<bool>& without) cons
   return m;
 }
 
+double System::second_variation(const la::Vector& x) const {
+  std::vector<double> all;
+  x.gather(all);
+  const auto first_is_own = [&](const auto& element) { return map_.node_rank[element.nodes[0]] == la::rank(); };
+  const auto at = [&](int block) { return Eigen::Map<const Vec3>(&all[3 * block]); };
+  double sum = 0;
+  for (const int i : share_.cables) {
+    const auto& cable = model_.cables[i];
+    if (!first_is_own(cable)) continue;
+    const auto data = model::cable_data(model_, cable);
+    const auto tangent =
+        element::evaluate_cable(data.properties, data.x_ref, gather(state_, cable.nodes), Want::tangent).tangent;
+    const auto blocks = blocks_of(map_, cable);
+    const Vec3 relative = at(blocks[1]) - at(blocks[0]);
+    sum += relative.dot(tangent.topLeftCorner<3, 3>() * relative);
+  }
+  for (const int i : share_.beams) {
+    const auto& beam = model_.beams[i];
+    if (!first_is_own(beam)) continue;
+    const auto blocks = blocks_of(map_, beam);
+    Vec<12> v;
+    v << at(blocks[0]), at(blocks[1]), at(blocks[2]), at(blocks[3]);
+    sum += element::beam_second_variation(model_.groups[beam.group].beam, model::beam_geometry(model_, beam),
+                                          beam_motion(state_, beam), v);
+  }
+  for (const int i : share_.membranes) {
+    const auto& membrane = model_.membranes[i];
+    if (!first_is_own(membrane)) continue;
+    const auto blocks = blocks_of(map_, membrane);
+    Vec<9> v;
+    v << at(blocks[0]), at(blocks[1]), at(blocks[2]);
+    const auto tangent = element::evaluate_membrane(model_.groups[membrane.group].membrane, membrane.prestress,
+                                                    membrane_nodes(model_, membrane), gather(state_, membrane.nodes), Want::tangent)
+                             .tangent;
+    sum += v.dot(tangent * v);
+  }
+  return la::sum_over_ranks(sum);
+}
+
 analysis::ResidualNorms System::norms(const la::Vector& f) const {
   std::vector<double> own(static_cast<std::size_t>(3 * map_.layout.local));
   f.read(own);

@@ -39,6 +39,8 @@ class Names {
   /// Where those names stand, e.g. "materials, line 12".
   std::string home(const std::string& kind) const;
   bool is_known(const std::string& kind, const std::string& name) const;
+  /// What the user may have meant by an unknown name, or "".
+  std::string remedy(const std::string& kind, const std::string& name) const;
 
  private:
   void collect();
@@ -46,6 +48,7 @@ class Names {
 
   const Node& root_;
   bool is_reflector_ = false;
+  int n_struts_ = 0;  ///< selections strut_0, strut_1, ... of a reflector
   bool open_ = false;
   std::string optional_group_;
   std::vector<std::string> element_groups_;

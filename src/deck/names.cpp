@@ -23,8 +23,9 @@ const std::vector<std::string>& reflector_selections() {
   return list;
 }
 
-bool is_strut(const std::string& name) {
-  return name.rfind("strut_", 0) == 0 && list_index(name.substr(6)) >= 0;
+/// The number k of "strut_<k>", or -1.
+int strut_number(const std::string& name) {
+  return name.rfind("strut_", 0) == 0 ? list_index(name.substr(6)) : -1;
 }
 
 std::vector<std::string> keys(const Node* node) {
@@ -47,6 +48,8 @@ Names::Names(const Deck& deck, const Node& root) : root_(root) {
   is_reflector_ = root.find("reflector") != nullptr;
   if (is_reflector_) {
     for (const auto& [name, member] : reflector_groups()) element_groups_.push_back(name);
+    if (deck.reflector)
+      n_struts_ = deck.reflector->struts > 0 ? deck.reflector->struts : 3 * deck.reflector->rings;
     if (deck.reflector && !deck.reflector->diagonals) optional_group_ = "diagonals";
   } else if (elements != nullptr && root.at({"model", "mesh"}) == nullptr) {
     element_groups_ = keys(elements);
@@ -111,7 +114,7 @@ std::string Names::home(const std::string& kind) const {
 
 bool Names::is_known(const std::string& kind, const std::string& name) const {
   if (contains(kind, name)) return true;
-  if (kind == "group") return open_ || (is_reflector_ && is_strut(name));
+  if (kind == "group") return open_ || (strut_number(name) >= 0 && strut_number(name) < n_struts_);
   if (kind == "node")
     return root_.at({"model", "nodes"}) == nullptr;  // a missing block is complained about elsewhere
   if (kind == "material" || kind == "section") {
@@ -123,6 +126,12 @@ bool Names::is_known(const std::string& kind, const std::string& name) const {
   return of_elements && root_.at({"groups", name, "section"}) != nullptr && !member(name);
 }
 
+std::string Names::remedy(const std::string& kind, const std::string& name) const {
+  if (kind == "group" && is_reflector_ && strut_number(name) >= 0)
+    return fmt::format("this reflector has strut_0 to strut_{}", n_struts_ - 1);
+  return did_you_mean(name, known(kind));
+}
+
 void check_references(const Names& names, Reader& reader) {
   for (const auto& reference : reader.references()) {
     if (names.is_known(reference.kind, reference.name)) continue;
@@ -130,7 +139,7 @@ void check_references(const Names& names, Reader& reader) {
     std::string expectation = fmt::format("the deck defines no {}s", reference.kind);
     if (!known.empty())
       expectation = fmt::format("expected one of: {}{}", join(known), names.home(reference.kind));
-    std::string suggestion = did_you_mean(reference.name, known);
+    std::string suggestion = names.remedy(reference.kind, reference.name);
     if (!reference.note.empty()) suggestion += (suggestion.empty() ? "" : "; ") + reference.note;
     std::string message = fmt::format("unknown {} \"{}\"", reference.kind, reference.name);
     const auto member = names.member(reference.name);

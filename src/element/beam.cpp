@@ -112,23 +112,54 @@ Mat<12> rotated(const Mat<12>& local, const Mat3& Q) {
   return global;
 }
 
+/// What the law says of one moment of a motion, everything that force and tangent are made of.
+struct Moment {
+  Corotated c;
+  std::array<SpinToRotationVector, 2> by_spin;
+  detail::BeamLocalResponse law;
+  Vec<7> spin_force;  ///< conjugate to the elongation and the relative spins
+  Vec<12> force;      ///< local
+};
+
+Moment evaluate_moment(const BeamSection& section, const BeamGeometry& geometry, const BeamMotion& motion, Want want) {
+  Corotated c = corotate(geometry, motion);
+  const std::array by_spin{SpinToRotationVector(c.rotations[0]), SpinToRotationVector(c.rotations[1])};
+  Vec<7> deformation;
+  deformation << c.chord.elongation, c.rotations[0], c.rotations[1];
+  const auto law = detail::beam_local_law(section, c.chord.length_ref, deformation, want);
+  Vec<7> spin_force;
+  spin_force << law.force[0], by_spin[0].matrix().transpose() * law.force.segment<3>(1),
+      by_spin[1].matrix().transpose() * law.force.segment<3>(4);
+  const Vec<12> force = c.relative_motion.transpose() * spin_force;
+  return {c, by_spin, law, spin_force, force};
+}
+
+/// Derivative of the spin force by elongation and relative spins: the stiffness of what the beam feels.
+Mat<7> relative_tangent(const Moment& m) {
+  Mat<7> relative = m.law.tangent;
+  for (int end = 0; end < 2; ++end) {
+    const int at = 1 + 3 * end;
+    relative.middleCols<3>(at) = (relative.middleCols<3>(at) * m.by_spin[end].matrix()).eval();
+    relative.middleRows<3>(at) = (m.by_spin[end].matrix().transpose() * relative.middleRows<3>(at)).eval();
+  }
+  for (int end = 0; end < 2; ++end) {
+    const int at = 1 + 3 * end;
+    relative.block<3, 3>(at, at) += m.by_spin[end].derivative_of_transpose_times(m.law.force.segment<3>(at));
+  }
+  return relative;
+}
+
+/// What turning the frame under the forces present adds; not symmetric.
+Mat<12> frame_tangent(const Moment& m) {
+  Mat<12> tangent = -lever_derivative(m.c, m.spin_force.segment<3>(1) + m.spin_force.segment<3>(4));
+  for (int at = 0; at < 12; at += 3) tangent.middleRows<3>(at) -= skew(m.force.segment<3>(at)) * m.c.frame_spin;
+  return tangent;
+}
+
 /// Symmetrised derivative of the local internal force by local motion.
-Mat<12> local_tangent(const Corotated& c, const std::array<SpinToRotationVector, 2>& by_spin,
-                      const detail::BeamLocalResponse& law, const Vec<7>& spin_force, const Vec<12>& force) {
-  Mat<7> relative = law.tangent;
-  for (int end = 0; end < 2; ++end) {
-    const int at = 1 + 3 * end;
-    relative.middleCols<3>(at) = (relative.middleCols<3>(at) * by_spin[end].matrix()).eval();
-    relative.middleRows<3>(at) = (by_spin[end].matrix().transpose() * relative.middleRows<3>(at)).eval();
-  }
-  for (int end = 0; end < 2; ++end) {
-    const int at = 1 + 3 * end;
-    relative.block<3, 3>(at, at) += by_spin[end].derivative_of_transpose_times(law.force.segment<3>(at));
-  }
-  const Vec3 moment = spin_force.segment<3>(1) + spin_force.segment<3>(4);
-  Mat<12> tangent =
-      c.relative_motion.transpose() * (relative * c.relative_motion) - lever_derivative(c, moment);
-  for (int at = 0; at < 12; at += 3) tangent.middleRows<3>(at) -= skew(force.segment<3>(at)) * c.frame_spin;
+Mat<12> local_tangent(const Moment& m) {
+  const Mat<12> tangent =
+      m.c.relative_motion.transpose() * (relative_tangent(m) * m.c.relative_motion) + frame_tangent(m);
   return (tangent + tangent.transpose()) / 2;
 }
 
@@ -158,25 +189,23 @@ Mat3 beam_frame(const Mat<3, 2>& x_ref, const Vec3& orientation) {
 
 BeamResponse evaluate_beam(const BeamSection& section, const BeamGeometry& geometry, const BeamMotion& motion,
                            Want want) {
-  const Corotated c = corotate(geometry, motion);
-  const std::array by_spin{SpinToRotationVector(c.rotations[0]), SpinToRotationVector(c.rotations[1])};
-  Vec<7> deformation;
-  deformation << c.chord.elongation, c.rotations[0], c.rotations[1];
-  const auto law = detail::beam_local_law(section, c.chord.length_ref, deformation, want);
-
-  Vec<7> spin_force;  // conjugate to the elongation and the relative spins
-  spin_force << law.force[0], by_spin[0].matrix().transpose() * law.force.segment<3>(1),
-      by_spin[1].matrix().transpose() * law.force.segment<3>(4);
-  const Vec<12> force = c.relative_motion.transpose() * spin_force;
-
+  const Moment m = evaluate_moment(section, geometry, motion, want);
   BeamResponse response;
-  response.energy = law.energy;
-  for (int at = 0; at < 12; at += 3) response.force.segment<3>(at) = c.frame * force.segment<3>(at);
-  response.forces = section_forces(force);
-  response.frame = c.frame;
-  if (want == Want::tangent)
-    response.tangent = rotated(local_tangent(c, by_spin, law, spin_force, force), c.frame);
+  response.energy = m.law.energy;
+  for (int at = 0; at < 12; at += 3) response.force.segment<3>(at) = m.c.frame * m.force.segment<3>(at);
+  response.forces = section_forces(m.force);
+  response.frame = m.c.frame;
+  if (want == Want::tangent) response.tangent = rotated(local_tangent(m), m.c.frame);
   return response;
+}
+
+double beam_second_variation(const BeamSection& section, const BeamGeometry& geometry, const BeamMotion& motion,
+                             const Vec<12>& velocity) {
+  const Moment m = evaluate_moment(section, geometry, motion, Want::tangent);
+  Vec<12> local;
+  for (int at = 0; at < 12; at += 3) local.segment<3>(at) = m.c.frame.transpose() * velocity.segment<3>(at);
+  const Vec<7> relative = m.c.relative_motion * local;
+  return relative.dot(relative_tangent(m) * relative) + local.dot(frame_tangent(m) * local);
 }
 
 Mat<12> beam_mass(const BeamSection& section, double length, const Mat3& frame) {

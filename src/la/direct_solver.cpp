@@ -114,6 +114,13 @@ void DirectSolver::count_solve(double seconds) {
   ++timings_.solves;
 }
 
+void DirectSolver::add(const SolverTimings& elsewhere) {
+  timings_.factorisation += elsewhere.factorisation;
+  timings_.solve += elsewhere.solve;
+  timings_.factorisations += elsewhere.factorisations;
+  timings_.solves += elsewhere.solves;
+}
+
 MatX DirectSolver::solve_many(const MatX& b) {
   const auto start = std::chrono::steady_clock::now();
   ::Mat right = nullptr, left = nullptr;

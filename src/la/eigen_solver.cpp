@@ -1,7 +1,3 @@
-#include <chrono>
-#include <cmath>
-#include <span>
-
 #include <fmt/format.h>
 #include <slepceps.h>
 
@@ -14,6 +10,7 @@
 #include <utility>
 
 #include "la/check.hpp"
+#include "la/eigen_refinement.hpp"
 
 namespace tautline::la {
 
@@ -68,133 +65,16 @@ void configure(::EPS eps, const SymmetricMatrix& stiffness, const SymmetricMatri
   set_start(eps, stiffness);
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-using Clock = std::chrono::steady_clock;
-
-/// Time of the shift-invert solves made inside EPSSolve.
-struct SolveClock {
-  Clock::time_point start;
-  SolverTimings timings;
-};
-
-PetscErrorCode before_solve(::KSP, ::Vec, ::Vec, void* data) {
-  static_cast<SolveClock*>(data)->start = Clock::now();
-  return 0;
-}
-
-PetscErrorCode after_solve(::KSP, ::Vec, ::Vec, void* data) {
-  auto& clock = *static_cast<SolveClock*>(data);
-  clock.timings.solve += seconds_since(clock.start);
-  ++clock.timings.solves;
-  return 0;
-}
-
-::KSP solver_of(::EPS eps) {
-  ::ST transform = nullptr;
-  ::KSP ksp = nullptr;
-  check(EPSGetST(eps, &transform), "EPSGetST");
-  check(STGetKSP(transform, &ksp), "STGetKSP");
-  return ksp;
-}
-
-long double dot(const std::vector<double>& a, const std::vector<long double>& b) {
-  long double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-/// Sharpens one mode after another; lower modes are kept out of higher ones.
-class Refinement {
- public:
-  Refinement(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, ::KSP solver)
-      : stiffness_(stiffness), mass_(mass), solver_(solver), scale_(stiffness.norm_of_diagonal()) {}
-
-  void refine(Vector& mode, EigenPairs& pairs) {
-    std::vector<double> x;
-    mode.gather(x);
-    long double value = normalise(x);
-    for (int round = 0; round < rounds; ++round) {
-      correct(mode, x, value);
-      value = normalise(x);
-    }
-    mode.write(own(mode, x));
-    pairs.values.push_back(static_cast<double>(value));
-    pairs.residuals.push_back(residual(x, value));
-    lower_.push_back(x);
-    lower_mass_.push_back(mass_.multiply_extended(x));
-  }
-
- private:
-  static constexpr int rounds = 2;
-
-  static std::span<const double> own(const Vector& like, const std::vector<double>& all) {
-    PetscInt first = 0;
-    check(VecGetOwnershipRange(like.handle(), &first, nullptr), "VecGetOwnershipRange");
-    return std::span(all).subspan(static_cast<std::size_t>(first),
-                                  static_cast<std::size_t>(like.local_size()));
-  }
-
-  /// Takes lower modes out, scales to x^T M x = 1 and returns the Rayleigh quotient.
-  long double normalise(std::vector<double>& x) const {
-    for (std::size_t m = 0; m < lower_.size(); ++m) {
-      const auto part = static_cast<double>(dot(x, lower_mass_[m]));
-      for (std::size_t i = 0; i < x.size(); ++i) x[i] -= part * lower_[m][i];
-    }
-    const auto length = static_cast<double>(std::sqrt(dot(x, mass_.multiply_extended(x))));
-    for (double& entry : x) entry /= length;
-    return dot(x, stiffness_.multiply_extended(x));
-  }
-
-  std::vector<double> imbalance(const std::vector<double>& x, long double value) const {
-    const auto kx = stiffness_.multiply_extended(x), mx = mass_.multiply_extended(x);
-    std::vector<double> r(x.size());
-    for (std::size_t i = 0; i < r.size(); ++i) r[i] = static_cast<double>(kx[i] - value * mx[i]);
-    return r;
-  }
-
-  /// x - S^-1 (K x - value M x) with the factored S: one inverse iteration.
-  void correct(Vector& mode, std::vector<double>& x, long double value) const {
-    const Vector right = Vector::like(mode);
-    mode.write(own(mode, imbalance(x, value)));
-    check(VecCopy(mode.handle(), right.handle()), "VecCopy");
-    check(KSPSolve(solver_, right.handle(), mode.handle()), "KSPSolve");
-    std::vector<double> change;
-    mode.gather(change);
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] -= change[i];
-  }
-
-  double residual(const std::vector<double>& x, long double value) const {
-    double r2 = 0, x2 = 0;
-    for (const double entry : imbalance(x, value)) r2 += entry * entry;
-    for (const double entry : x) x2 += entry * entry;
-    return std::sqrt(r2 / x2) / scale_;
-  }
-
-  const SymmetricMatrix& stiffness_;
-  const SymmetricMatrix& mass_;
-  ::KSP solver_;
-  double scale_;
-  std::vector<std::vector<double>> lower_;
-  std::vector<std::vector<long double>> lower_mass_;
-};
-
-}  // namespace
-
-EigenPairs solve_vibration(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count,
-                           double shift) {
+/// The `count` pairs nearest to the shift that SLEPc finds outside the space of `known`.
+EigenPairs find_pairs(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count, double shift,
+                      const std::vector<Vector>& known) {
   const Handle eps;
-  SolveClock clock;
   configure(eps.get(), stiffness, mass, count, shift);
-  const auto start = Clock::now();
-  check(EPSSetUp(eps.get()), "EPSSetUp");
-  clock.timings.factorisation = seconds_since(start);
-  clock.timings.factorisations = 1;
-  const ::KSP solver = solver_of(eps.get());
-  check(KSPSetPreSolve(solver, before_solve, &clock), "KSPSetPreSolve");
-  check(KSPSetPostSolve(solver, after_solve, &clock), "KSPSetPostSolve");
+  std::vector<::Vec> space;
+  for (const auto& vector : known) space.push_back(vector.handle());
+  if (!space.empty())
+    check(EPSSetDeflationSpace(eps.get(), static_cast<PetscInt>(space.size()), space.data()),
+          "EPSSetDeflationSpace");
   check(EPSSolve(eps.get()), "EPSSolve");
   PetscInt converged = 0;
   check(EPSGetConverged(eps.get(), &converged), "EPSGetConverged");
@@ -203,16 +83,82 @@ EigenPairs solve_vibration(const SymmetricMatrix& stiffness, const SymmetricMatr
         "SLEPc found {} of the {} modes asked for: ask for fewer, or check that the structure has mass",
         static_cast<int>(converged), count));
   EigenPairs pairs;
-  Refinement refinement(stiffness, mass, solver);
   for (int i = 0; i < count; ++i) {
     ::Vec x = nullptr;
     check(MatCreateVecs(stiffness.handle(), &x, nullptr), "MatCreateVecs");
+    PetscScalar value = 0;
+    check(EPSGetEigenpair(eps.get(), i, &value, nullptr, x, nullptr), "EPSGetEigenpair");
+    pairs.values.push_back(value);
     pairs.vectors.push_back(Vector::adopt(x));
-    check(EPSGetEigenpair(eps.get(), i, nullptr, nullptr, x, nullptr), "EPSGetEigenpair");
-    refinement.refine(pairs.vectors.back(), pairs);
+    pairs.residuals.push_back(0);
   }
-  pairs.timings = clock.timings;
   return pairs;
+}
+
+/// Number of eigenvalues below `value`, up to a constant: the negative pivots of K - value M (Sylvester's
+/// law).
+int count_below(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, double value) {
+  const SymmetricMatrix shifted = stiffness.plus(-value, mass);
+  DirectSolver solver;
+  if (!solver.factor(shifted)) throw LibraryError("the count of modes failed: " + solver.failure());
+  return solver.inertia().negative;
+}
+
+/// How many eigenvalues lie nearer to the shift than the farthest one found and are not among those found:
+/// copies of multiple ones, which one Krylov sequence meets by round-off only.
+int count_missing(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, const EigenPairs& pairs,
+                  double shift) {
+  double radius = 0;
+  for (const double value : pairs.values) radius = std::max(radius, std::abs(value - shift));
+  radius *= 1 - 1e-8;
+  if (radius == 0) return 0;
+  const auto found = std::count_if(pairs.values.begin(), pairs.values.end(),
+                                   [&](double value) { return std::abs(value - shift) < radius; });
+  return count_below(stiffness, mass, shift + radius) - count_below(stiffness, mass, shift - radius) -
+         static_cast<int>(found);
+}
+
+/// Puts `more` to `pairs` and keeps the `count` nearest to the shift, smallest first.
+void merge(EigenPairs& pairs, EigenPairs more, int count, double shift) {
+  for (std::size_t i = 0; i < more.values.size(); ++i) {
+    pairs.values.push_back(more.values[i]);
+    pairs.vectors.push_back(std::move(more.vectors[i]));
+    pairs.residuals.push_back(more.residuals[i]);
+  }
+  std::vector<std::size_t> order(pairs.values.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(pairs.values[a] - shift) < std::abs(pairs.values[b] - shift);
+  });
+  order.resize(static_cast<std::size_t>(count));
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return pairs.values[a] < pairs.values[b]; });
+  EigenPairs kept;
+  for (const std::size_t i : order) {
+    kept.values.push_back(pairs.values[i]);
+    kept.vectors.push_back(std::move(pairs.vectors[i]));
+    kept.residuals.push_back(pairs.residuals[i]);
+  }
+  pairs = std::move(kept);
+}
+
+}  // namespace
+
+EigenPairs solve_vibration(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count,
+                           double shift) {
+  constexpr int most_rounds = 8;
+  EigenPairs pairs;
+  merge(pairs, find_pairs(stiffness, mass, count, shift, {}), count, shift);
+  for (int round = 0; round < most_rounds; ++round) {
+    const int missing = count_missing(stiffness, mass, pairs, shift);
+    if (missing <= 0) {
+      refine(stiffness, mass, shift, pairs);
+      return pairs;
+    }
+    merge(pairs, find_pairs(stiffness, mass, missing, shift, pairs.vectors), count, shift);
+  }
+  throw LibraryError(
+      "SLEPc did not find every mode of a cluster of equal frequencies: ask for more or fewer modes");
 }
 
 }  // namespace tautline::la

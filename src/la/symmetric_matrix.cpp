@@ -1,6 +1,7 @@
 #include <tautline/la/symmetric_matrix.hpp>
 
 #include <array>
+#include <cassert>
 #include <utility>
 
 #include <petscmat.h>
@@ -41,6 +42,7 @@ void SymmetricMatrix::set_zero() { check(MatZeroEntries(mat_), "MatZeroEntries")
 void SymmetricMatrix::add(std::span<const int> blocks, const double* values) {
   const int n = static_cast<int>(blocks.size());
   std::array<int, 8> rows{};  // PETSc passes over negative rows
+  assert(blocks.size() <= rows.size());
   for (int i = 0; i < n; ++i) {
     const bool own = blocks[i] >= layout_.first && blocks[i] < layout_.first + layout_.local;
     rows[i] = own ? blocks[i] : -1;

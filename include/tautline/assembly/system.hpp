@@ -66,6 +66,9 @@ class System : public analysis::PathProblem {
   /// Mass matrix of the free unknowns in the present state; rows and columns of held ones are zero.
   la::SymmetricMatrix mass() const { return assemble_mass(held_); }
   la::SymmetricMatrix new_matrix() const { return {map_.layout, map_.pattern}; }
+  /// x^T K x in the present state, summed element by element from relative motions so that it keeps its digits where a stiff frame
+  /// moves almost rigidly. Collective.
+  double second_variation(const la::Vector& x) const;
   /// Whether an unknown is held: index 3 * block + component.
   const std::vector<bool>& held() const noexcept { return held_; }
   /// Reactions: internal minus external force at every node, zero where nothing is held [N], [N m].

@@ -68,6 +68,13 @@ Mat3 beam_frame(const Mat<3, 2>& x_ref, const Vec3& orientation);
 BeamResponse evaluate_beam(const BeamSection& section, const BeamGeometry& geometry, const BeamMotion& motion,
                            Want want);
 
+/// @brief v^T K v for a motion v of the ends, order as the tangent's [J if v is in m and rad].
+///
+/// Formed from the relative motion of the ends, not from K: where a stiff beam moves almost rigidly, K's
+/// entries are large, cancel, and leave their rounding.
+double beam_second_variation(const BeamSection& section, const BeamGeometry& geometry, const BeamMotion& motion,
+                             const Vec<12>& velocity);
+
 /// @brief Consistent mass matrix (Euler-Bernoulli with rotary inertia) in the global frame [kg, kg m, kg
 /// m^2].
 ///

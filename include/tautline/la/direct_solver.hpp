@@ -40,7 +40,8 @@ class DirectSolver {
 
   const SolverTimings& timings() const noexcept { return timings_; }
   _p_KSP* handle() const noexcept { return ksp_; }
-  void count_solve(double seconds);  ///< for solves made through the handle
+  void count_solve(double seconds);          ///< for solves made through the handle
+  void add(const SolverTimings& elsewhere);  ///< for work of the same kind that another solver did
 
  private:
   void set_options();

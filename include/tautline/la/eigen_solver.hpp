@@ -13,7 +13,7 @@ struct EigenPairs {
   std::vector<double> values;
   std::vector<Vector> vectors;      ///< normalised to x^T M x = 1
   std::vector<double> residuals;    ///< |K x - lambda M x| / (|diagonal of K|_max |x|)
-  SolverTimings timings;            ///< of the shift-invert solver
+  SolverTimings timings;            ///< of the refinement; SLEPc keeps its own
 };
 
 /// @brief The `count` eigenvalues of K x = lambda M x nearest to `shift`, smallest first; K symmetric, M positive
