@@ -73,12 +73,12 @@ configure() {
   if [ -f "$build/CMakeCache.txt" ]; then
     if ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$build/CMakeCache.txt"; then
       fresh=(--fresh)
-    elif [ -f "$build/build.ninja" ]; then
+    elif [ -f "$build/build.ninja" ] && grep -qxF "TAUTLINE_BUILD_TESTS:BOOL=ON" "$build/CMakeCache.txt"; then
       return
     fi
   fi
   say "configuring $build"
-  (cd "$root" && cmake --preset release "${fresh[@]}") >&2
+  (cd "$root" && cmake --preset release "${fresh[@]}" -DTAUTLINE_BUILD_TESTS=ON) >&2
 }
 
 # As many jobs as there are processors, if there is 1.2 GB of memory for each.
