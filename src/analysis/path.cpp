@@ -43,6 +43,7 @@ PathSummary follow_path(PathProblem& problem, Workspace& workspace, const Newton
       }
       problem.roll_back();
       ++summary.failed_attempts;
+      summary.singular = newton.status == NewtonStatus::singular;
       step = std::min(step, aim - reached) / 2;
       if (step < options.min_step) {
         problem.set_lambda(reached);

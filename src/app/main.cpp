@@ -38,28 +38,26 @@ Progress::Mode progress_mode(const Request& request) {
 }
 
 int run(const Request& request) {
-  const la::Session session;
-  watch_for_interrupt();
   Progress progress(progress_mode(request));
   const auto deck = deck::read_deck(request.deck, request.overrides);
   return static_cast<int>(steps::run(deck, {directory_of(request), !request.no_pictures}, progress));
 }
 
 int study(const Request& request) {
-  const la::Session session;
-  watch_for_interrupt();
   Progress progress(progress_mode(request));
   return static_cast<int>(steps::study(request.deck, request.overrides, request.subdivisions,
                                        {directory_of(request, "_study"), !request.no_pictures}, progress));
 }
 
 int check(const Request& request) {
-  std::cout << steps::check(deck::read_deck(request.deck, request.overrides));
+  const std::string text = steps::check(deck::read_deck(request.deck, request.overrides));
+  if (la::rank() == 0) std::cout << text;
   return 0;
 }
 
 /// Exit code and message of whatever came out. Deck errors are the same on every rank: rank 0 tells them.
 int report_failure(const std::string& message, ExitCode code) {
+  if (la::rank() != 0) return static_cast<int>(code);
   if (message.empty() || message.back() != '\n')
     std::cerr << message << '\n';
   else
@@ -79,6 +77,16 @@ int guarded(const std::function<int()>& action) {
   } catch (const std::exception& error) {
     return report_failure(fmt::format("internal error: {}\nThis is a bug, please report it with the deck.", error.what()), ExitCode::bug);
   }
+}
+
+/// Runs with the libraries started and Ctrl-C watched. A failure that only one rank may have met ends all of them.
+int in_session(const std::function<int()>& action) {
+  const la::Session session;
+  watch_for_interrupt();
+  const int code = guarded(action);
+  if (code >= static_cast<int>(ExitCode::library_failed) && code != static_cast<int>(ExitCode::interrupted) && la::size() > 1)
+    la::abort_all_ranks(code);
+  return code;
 }
 
 void add_deck_options(CLI::App& command, Request& request) {
@@ -104,22 +112,25 @@ int main(int argc, char** argv) {
   const auto on = [&](CLI::App* command, int (*action)(const Request&)) {
     command->callback([&result, &request, action] { result = guarded([&] { return action(request); }); });
   };
+  const auto on_ranks = [&](CLI::App* command, int (*action)(const Request&)) {
+    command->callback([&result, &request, action] { result = in_session([&] { return action(request); }); });
+  };
 
   auto* run_command = app.add_subcommand("run", "run a deck");
   add_run_options(*run_command, request);
   run_command->footer("Example: tautline run inputs/perimeter_truss_12m.yaml --set parameters.subdivisions=8");
-  on(run_command, run);
+  on_ranks(run_command, run);
 
   auto* check_command = app.add_subcommand("check", "tell every error of a deck, and what would make its solve fail; solves nothing");
   add_deck_options(*check_command, request);
   check_command->footer("Example: tautline check inputs/perimeter_truss_12m.yaml");
-  on(check_command, check);
+  on_ranks(check_command, check);
 
   auto* study_command = app.add_subcommand("study", "run a deck with several subdivisions and compare");
   add_run_options(*study_command, request);
   study_command->add_option("--subdivisions", request.subdivisions, "parts of each facet side")->delimiter(',');
   study_command->footer("Example: tautline study inputs/perimeter_truss_12m.yaml --subdivisions 2,4,6,8");
-  on(study_command, study);
+  on_ranks(study_command, study);
 
   auto* new_command = app.add_subcommand("new", "print a commented starting deck");
   new_command->add_option("kind", request.kind, "perimeter-truss, net, membrane or frame")->required();

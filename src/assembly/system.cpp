@@ -90,6 +90,18 @@ void System::set_state(const model::State& state) {
   restart();
 }
 
+void System::set_state(const model::State& state, const std::vector<double>& strains) {
+  set_state(state);
+  for (std::size_t i = 0; i < strains.size(); ++i) model_.cables[i].initial_strain = strains[i];
+  start_strain_ = end_strain_ = strains;
+}
+
+std::vector<double> System::strains() const {
+  std::vector<double> result;
+  for (const auto& cable : model_.cables) result.push_back(cable.initial_strain);
+  return result;
+}
+
 void System::hold(const std::vector<model::Support>& supports) {
   held_.assign(held_.size(), false);
   for (const auto& support : supports)

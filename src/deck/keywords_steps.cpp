@@ -135,7 +135,7 @@ Block make_equilibrium() {
 void check_tuning(Reader& reader, const Node& node, TuningStepOptions& options) {
   const auto& tuning = options.tuning;
   if (tuning.method == reflector::TuningMethod::rule)
-    for (const char* key : {"objective", "tension_min", "tension_max"})
+    for (const char* key : {"objective", "tension_min", "tension_max", "regularisation"})
       if (const Node* value = node.find(key))
         reader.complain(value->label, fmt::format("\"{}\" has no effect with method rule", key),
                         reader.context(), {}, "it belongs to method: sensitivity");
@@ -177,6 +177,7 @@ Block make_tuning() {
        "tension_min", [](TuningStepOptions & o) -> auto& { return o.tuning.tension_min; })
       .in("N")
       .at_least(0)
+      .by_default("half of the least tie tension when the tuning begins")
       .says("Method sensitivity: least tension of a tie.");
   b.key(
        "tension_max", [](TuningStepOptions & o) -> auto& { return o.tuning.tension_max; })
@@ -184,6 +185,12 @@ Block make_tuning() {
       .above(0)
       .by_default("no limit")
       .says("Method sensitivity: greatest tension of a tie.");
+  b.key(
+       "regularisation", [](TuningStepOptions & o) -> auto& { return o.tuning.regularisation; })
+      .at_least(0)
+      .says(
+          "Method sensitivity: weight of tie-tension changes beside the surface error; less reaches a smaller "
+          "error by larger and less even tensions.");
   b.key(
        "max_change", [](TuningStepOptions & o) -> auto& { return o.tuning.max_change; })
       .in("m")

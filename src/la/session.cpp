@@ -41,7 +41,9 @@ Session::Session() {
 Session::~Session() { SlepcFinalize(); }
 
 int rank() {
-  int value = 0;
+  int value = 0, started = 0;
+  MPI_Initialized(&started);
+  if (started == 0) return 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &value);
   return value;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,24 @@ namespace tautline::output::detail {
 
 using Json = nlohmann::ordered_json;
 
+namespace {
+
+/// Below and above, figures are written with powers of ten.
+constexpr double least_plain = 1e-3, most_plain = 1e7;
+
+bool whole(double value) {
+  return value == std::round(value) && std::abs(value) < most_plain;
+}
+
+/// Decimals that give `size` its significant digits, counted after rounding (9.9996 is 10.00).
+int decimals(double size, int digits) {
+  if (size == 0 || !std::isfinite(size)) return 0;
+  const std::string rounded = fmt::format("{:.{}e}", size, digits - 1);
+  return std::max(0, digits - 1 - std::stoi(rounded.substr(rounded.find('e') + 1)));
+}
+
+}  // namespace
+
 const Json& member(const Json& object, const char* name) {
   static const Json nothing;
   if (!object.is_object()) return nothing;
@@ -18,7 +37,12 @@ const Json& member(const Json& object, const char* name) {
   return found == object.end() ? nothing : *found;
 }
 
-std::optional<double> number(const Json& value) {
+const Json& entry(const Json& list, std::size_t index) {
+  static const Json nothing;
+  return list.is_array() && index < list.size() ? list[index] : nothing;
+}
+
+Figure number(const Json& value) {
   if (!value.is_number()) return std::nullopt;
   return value.get<double>();
 }
@@ -28,23 +52,50 @@ std::string text(const Json& value) {
   return value.is_null() || value.is_structured() ? "" : value.dump();
 }
 
-std::string show(std::optional<double> value, const char* unit, double scale, int digits) {
+std::string show(Figure value, const char* unit, double scale, int digits) {
   if (!value || !std::isfinite(*value)) return "-";
   const double scaled = scale * *value, size = std::abs(scaled);
   std::string figure;
-  if (scaled == std::round(scaled) && size < 1e7) {
+  if (whole(scaled))
     figure = fmt::format("{:.0f}", scaled);
-  } else if (size >= 1e-3 && size < 1e7) {
-    const int before = static_cast<int>(std::floor(std::log10(size))) + 1;
-    figure = fmt::format("{:.{}f}", scaled, std::max(0, digits - before));
-  } else {
+  else if (size >= least_plain && size < most_plain)
+    figure = fmt::format("{:.{}f}", scaled, decimals(size, digits));
+  else
     figure = fmt::format("{:.{}e}", scaled, digits - 2);
-  }
   return *unit == '\0' ? figure : figure + " " + unit;
 }
 
 std::string show(const Json& value, const char* unit, double scale, int digits) {
   return show(number(value), unit, scale, digits);
+}
+
+std::vector<std::string> show_column(const std::vector<Figure>& values, double scale, int digits) {
+  double smallest = std::numeric_limits<double>::infinity(), largest = 0;
+  bool all_whole = true;
+  for (const auto& value : values) {
+    if (!value || !std::isfinite(*value)) continue;
+    const double size = std::abs(scale * *value);
+    all_whole = all_whole && whole(scale * *value);
+    largest = std::max(largest, size);
+    if (size > 0) smallest = std::min(smallest, size);
+  }
+  const bool powers = largest < least_plain || largest >= most_plain || smallest < 1e-6 * largest;
+  const int places = decimals(largest, digits);
+  const int all_places = std::min(places + 1, std::max(places, decimals(smallest, digits)));
+  std::vector<std::string> figures;
+  for (const auto& value : values) {
+    if (!value || !std::isfinite(*value) || *value == 0 || all_whole)
+      figures.push_back(show(value, "", scale));
+    else if (powers)
+      figures.push_back(fmt::format("{:.{}e}", scale * *value, digits - 1));
+    else
+      figures.push_back(fmt::format("{:.{}f}", scale * *value, all_places));
+  }
+  return figures;
+}
+
+std::string counted(const Json& count, const std::string& one, const std::string& many) {
+  return fmt::format("{} {}", show(count), number(count) == 1.0 ? one : many);
 }
 
 std::string words(std::string name) {

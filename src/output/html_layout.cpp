@@ -17,10 +17,11 @@ constexpr auto style = R"(
   --card: #1f242c; --accent: #74b4ee; --good: #6cc893; --bad: #f09a86; --badpaper: #3a211c; } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--paper); color: var(--ink); font: 15px/1.5 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; }
-main { max-width: 1080px; margin: 0 auto; padding: 28px 22px 60px; }
+main { max-width: 1160px; margin: 0 auto; padding: 28px 22px 60px; }
 h1 { font-size: 1.75rem; line-height: 1.2; margin: 0 0 4px; }
 h2 { font-size: 1.25rem; margin: 40px 0 8px; padding-top: 10px; border-top: 1px solid var(--line); }
-h3 { font-size: 1rem; margin: 22px 0 6px; }
+h2 .faint { font-size: .88rem; font-weight: 400; }
+h3 { font-size: .95rem; margin: 12px 0 4px; }
 p { margin: 4px 0 10px; }
 .faint { color: var(--faint); overflow-wrap: anywhere; }
 .status { display: inline-block; padding: 1px 10px; border-radius: 10px; font-size: .82rem; font-weight: 600;
@@ -34,16 +35,27 @@ p { margin: 4px 0 10px; }
 .card span { color: var(--faint); font-size: .84rem; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .9rem; }
-th, td { padding: 4px 14px 4px 0; text-align: right; border-bottom: 1px solid var(--line); }
+th, td { padding: 4px 0 4px 20px; text-align: right; border-bottom: 1px solid var(--line); }
 th { color: var(--faint); font-weight: 600; vertical-align: bottom; }
-th:first-child, td:first-child { text-align: left; }
+th:first-child, td:first-child { text-align: left; padding-left: 0; }
+td { white-space: nowrap; }
 dl { display: grid; grid-template-columns: repeat(auto-fill, minmax(250px, 1fr)); gap: 2px 26px; margin: 8px 0; }
 dl div { display: flex; justify-content: space-between; gap: 14px; border-bottom: 1px solid var(--line); padding: 3px 0; }
 dt { color: var(--faint); } dd { margin: 0; text-align: right; font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
-figure { margin: 18px 0; } figure img { max-width: 100%; height: auto; border-radius: 8px; border: 1px solid var(--line); background: #fff; }
-figcaption { color: var(--faint); font-size: .9rem; }
+.blocks { display: flex; flex-wrap: wrap; gap: 6px 44px; align-items: flex-start; margin: 10px 0 14px; }
+.blocks > section { max-width: 100%; }
+.pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(460px, 100%), 1fr)); gap: 18px; align-items: start;
+  margin: 16px 0; }
+figure { margin: 0; max-width: 640px; }
+figure img { display: block; width: 100%; height: auto; border-radius: 8px; border: 1px solid var(--line); background: #fff;
+  cursor: zoom-in; }
+figure input { position: absolute; opacity: 0; }
+figure input:focus-visible + img { outline: 2px solid var(--accent); }
+figure input:checked + img { position: fixed; inset: 0; width: 100vw; height: 100vh; object-fit: contain; z-index: 9;
+  border-radius: 0; border: 0; cursor: zoom-out; }
+figcaption { color: var(--faint); font-size: .86rem; line-height: 1.35; margin-top: 5px; }
 summary { cursor: pointer; color: var(--accent); }
-@media print { main { max-width: none; padding: 0; } h2 { break-after: avoid; } figure, table, .card { break-inside: avoid; }
+@media print { figure input { display: none; } main { max-width: none; padding: 0; } h2 { break-after: avoid; } figure, table, .card { break-inside: avoid; }
   .card { border: 1px solid #ccc; } }
 )";
 
@@ -61,16 +73,20 @@ std::string html_table(const Table& table) {
       "<div class=\"wide\"><table>\n<thead>" + cells(table.header, "th") + "</thead>\n<tbody>\n";
   for (const auto& row : table.rows) html += cells(row, "td");
   html += "</tbody></table></div>\n";
-  const std::string title = escape_markup(table.title);
+  if (table.title.empty()) return html;  // a page of its own: never folded
   if (table.rows.size() > rows_without_folding)
-    return fmt::format("<h3>{}</h3>\n<details><summary>{} rows</summary>\n{}</details>\n", title,
-                       table.rows.size(), html);
-  return title.empty() ? html : fmt::format("<h3>{}</h3>\n{}", title, html);
+    html = fmt::format("<details><summary>{} rows</summary>\n{}</details>\n", table.rows.size(), html);
+  return fmt::format("<section>\n<h3>{}</h3>\n{}</section>\n", escape_markup(table.title), html);
 }
 
-std::string html_facts(const std::vector<Fact>& facts) {
+std::string html_blocks(const std::string& blocks) {
+  return blocks.empty() ? "" : "<div class=\"blocks\">\n" + blocks + "</div>\n";
+}
+
+std::string html_facts(const std::vector<Fact>& facts, const std::string& title) {
   if (facts.empty()) return "";
-  std::string html = "<dl>\n";
+  std::string html = title.empty() ? "" : fmt::format("<h3>{}</h3>\n", escape_markup(title));
+  html += "<dl>\n";
   for (const auto& [label, value] : facts)
     html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escape_markup(label), escape_markup(value));
   return html + "</dl>\n";

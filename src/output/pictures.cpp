@@ -1,6 +1,5 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
-#include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
 #include <tautline/core/plugin.hpp>

@@ -50,11 +50,21 @@ std::vector<Picture> pictures_of(const std::string& directory, const Json& resul
   return pictures;
 }
 
+/// A click or the space bar shows the picture as large as the window, and small again.
 std::string figure(const Picture& picture) {
   const std::string caption = escape_markup(picture.caption);
   return fmt::format(
-      "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
+      "<figure><label><input type=\"checkbox\" aria-label=\"enlarge the picture\"><img alt=\"{0}\" "
+      "src=\"data:image/png;base64,{1}\"></label><figcaption>{0}</figcaption></figure>\n",
       caption, detail::base64(detail::read_file(picture.path)));
+}
+
+/// The pictures of one step, side by side.
+std::string gallery(const std::vector<Picture>& pictures, const std::string& step) {
+  std::string html;
+  for (const auto& picture : pictures)
+    if (picture.step == step) html += figure(picture);
+  return html.empty() ? "" : "<div class=\"pictures\">\n" + html + "</div>\n";
 }
 
 std::string badge(const std::string& status) {
@@ -77,20 +87,70 @@ std::string heading(const detail::Story& story, const Json& results) {
   return html + detail::html_cards(story.headline);
 }
 
-std::string step_section(const detail::Chapter& step, const std::vector<Picture>& pictures) {
+std::string tables(const std::vector<detail::Table>& tables) {
+  std::string html;
+  for (const auto& table : tables) html += detail::html_table(table);
+  return detail::html_blocks(html);
+}
+
+/// What one step ended with: surface, forces, pictures.
+std::string state(const detail::Chapter& step, const std::vector<Picture>& pictures) {
+  return gallery(pictures, step.name) + detail::html_facts(step.surface, "Surface against the paraboloid") +
+         tables(step.groups);
+}
+
+/// The last step that ended with a state, and the last modes; either may be lacking.
+struct Ends {
+  const detail::Chapter* state = nullptr;
+  const detail::Chapter* modes = nullptr;
+};
+
+Ends ends_of(const detail::Story& story, const Json& results) {
+  Ends ends;
+  const auto step_with = [&](const char* name) {
+    return detail::text(detail::member(detail::last_step_with(results, name), "name"));
+  };
+  const std::string groups = step_with("groups"), surface = step_with("surface"),
+                    modes = step_with("frequencies");
+  for (const auto& step : story.steps) {
+    if (step.name.empty()) continue;
+    if (step.name == (groups.empty() ? surface : groups)) ends.state = &step;
+    if (step.name == modes) ends.modes = &step;
+  }
+  return ends;
+}
+
+std::string final_section(const Ends& ends, const std::vector<Picture>& pictures) {
+  if (ends.state == nullptr && ends.modes == nullptr) return "";
+  std::string html = "<section>\n<h2>Final state";
+  if (ends.state != nullptr)
+    html +=
+        fmt::format(" <span class=\"faint\">after {}</span>", escape_markup(detail::words(ends.state->name)));
+  html += "</h2>\n";
+  if (ends.state != nullptr) html += state(*ends.state, pictures);
+  if (ends.modes != nullptr && ends.modes != ends.state)
+    html += gallery(pictures, ends.modes->name) + tables(ends.modes->tables);
+  return html + "</section>\n";
+}
+
+/// How a step went; what it ended with, too, unless the section of the final state shows it.
+std::string step_section(const detail::Chapter& step, const Ends& ends,
+                         const std::vector<Picture>& pictures) {
   const std::string name = detail::capitalised(detail::words(step.name));
-  std::string html = fmt::format("<section>\n<h2>{} {}</h2>\n", escape_markup(name), badge(step.status));
   std::string kind = step.kind == detail::words(step.name) ? "" : step.kind;
   if (!step.time.empty()) kind += (kind.empty() ? "" : ", ") + step.time;
-  if (!kind.empty()) html += fmt::format("<p class=\"faint\">{}</p>\n", escape_markup(kind));
+  std::string html = fmt::format("<section>\n<h2>{} {} <span class=\"faint\">{}</span></h2>\n",
+                                 escape_markup(name), badge(step.status), escape_markup(kind));
   if (!step.reason.empty()) {
     const std::string reason = escape_markup(step.reason);
     html += step.status == "done" ? fmt::format("<p>{}</p>\n", reason) : alarm(reason);
   }
   html += detail::html_facts(step.facts);
-  for (const auto& table : step.tables) html += detail::html_table(table);
-  for (const auto& picture : pictures)
-    if (picture.step == step.name) html += figure(picture);
+  if (&step == ends.modes && &step != ends.state)
+    return html + "<p class=\"faint\">Modes: see the final state.</p>\n</section>\n";
+  html += tables(step.tables);
+  html += &step == ends.state ? "<p class=\"faint\">Surface, forces and pictures: see the final state.</p>\n"
+                              : state(step, pictures);
   return html + "</section>\n";
 }
 
@@ -101,17 +161,20 @@ std::string other_pictures(const detail::Story& story, const std::vector<Picture
                                    [&](const detail::Chapter& step) { return step.name == picture.step; });
     if (!shown) html += figure(picture);
   }
-  return html.empty() ? "" : "<section>\n<h2>Pictures</h2>\n" + html + "</section>\n";
+  return html.empty()
+             ? ""
+             : "<section>\n<h2>Pictures</h2>\n<div class=\"pictures\">\n" + html + "</div>\n</section>\n";
 }
 
 std::string single_report(const std::string& directory) {
   const Json results = read_results(directory + "/results.json");
   const auto story = detail::tell(results);
   const auto pictures = pictures_of(directory, results);
-  std::string body = heading(story, results);
+  const Ends ends = ends_of(story, results);
+  std::string body = heading(story, results) + final_section(ends, pictures);
   if (!story.model.empty())
     body += "<section>\n<h2>Structure</h2>\n" + detail::html_facts(story.model) + "</section>\n";
-  for (const auto& step : story.steps) body += step_section(step, pictures);
+  for (const auto& step : story.steps) body += step_section(step, ends, pictures);
   body += other_pictures(story, pictures);
   body += "<section>\n<h2>Run</h2>\n" + detail::html_table(story.timings) +
           detail::html_facts(story.program) + "</section>\n";

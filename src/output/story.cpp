@@ -78,29 +78,47 @@ std::vector<Fact> program_facts(const Json& results) {
   return facts;
 }
 
+/// One column of the table of times; `get` picks the figure of a step.
+template <typename Get>
+void add_column(Table& table, const Json& steps, const char* label, int digits, double scale,
+                const Get& get) {
+  std::vector<Figure> values;
+  for (const auto& step : steps) values.push_back(number(get(step)));
+  const auto figures = show_column(values, scale, digits);
+  table.header.emplace_back(label);
+  for (std::size_t i = 0; i < figures.size(); ++i) table.rows[i].push_back(figures[i]);
+}
+
 Table timings(const Json& steps) {
-  Table table{"Time and memory",
-              {"step", "wall [s]", "assembly [s]", "factorisation [s]", "solve [s]", "other [s]",
-               "factorisations", "peak memory [MB]"},
-              {}};
-  for (const auto& step : steps) {
-    const Json& t = member(step, "timings");
-    table.rows.push_back({text(member(step, "name")), show(member(step, "wall_seconds"), "", 1, 3),
-                          show(member(t, "assembly"), "", 1, 3), show(member(t, "factorisation"), "", 1, 3),
-                          show(member(t, "solve"), "", 1, 3), show(member(t, "other"), "", 1, 3),
-                          show(member(step, "factorisations")),
-                          show(member(step, "peak_memory_bytes"), "", 1e-6, 3)});
-  }
+  Table table{"Time and memory", {"step"}, {}};
+  for (const auto& step : steps) table.rows.push_back({text(member(step, "name"))});
+  const auto of_step = [](const char* name) {
+    return [name](const Json& step) -> const Json& { return member(step, name); };
+  };
+  const auto of_timings = [](const char* name) {
+    return [name](const Json& step) -> const Json& { return member(member(step, "timings"), name); };
+  };
+  add_column(table, steps, "wall [s]", 3, 1, of_step("wall_seconds"));
+  add_column(table, steps, "assembly [s]", 3, 1, of_timings("assembly"));
+  add_column(table, steps, "factorisation [s]", 3, 1, of_timings("factorisation"));
+  add_column(table, steps, "solve [s]", 3, 1, of_timings("solve"));
+  add_column(table, steps, "other [s]", 3, 1, of_timings("other"));
+  add_column(table, steps, "factorisations", 4, 1, of_step("factorisations"));
+  add_column(table, steps, "peak memory [MB]", 3, 1e-6, of_step("peak_memory_bytes"));
   return table;
 }
 
 }  // namespace
 
-const Json& last_of(const Json& results, const char* name) {
+const Json& last_step_with(const Json& results, const char* name) {
   const Json& steps = member(results, "steps");
   for (auto step = steps.rbegin(); step != steps.rend(); ++step)
-    if (const Json& value = member(*step, name); !value.is_null()) return value;
+    if (!member(*step, name).is_null()) return *step;
   return member(Json(), "");
+}
+
+const Json& last_of(const Json& results, const char* name) {
+  return member(last_step_with(results, name), name);
 }
 
 Story tell(const Json& results) {

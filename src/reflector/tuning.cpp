@@ -98,9 +98,8 @@ VecX sensitivity_change(const Paraboloid& surface, const SurfaceSample& sample, 
   const VecX mean_row = j.transpose() * ones;
   MatX h = j.transpose() * weighted - mean_row * mean_row.transpose() / ones.sum();
   const VecX g = j.transpose() * form.load - mean_row * (form.load.sum() / ones.sum());
-  // Ties the measured surface hardly feels keep their tension.
-  const double mu = std::getenv("TL_MU") ? std::atof(std::getenv("TL_MU")) : 1e-6;
-  h.diagonal().array() += mu * h.diagonal().mean();
+  // Ties the measured surface hardly feels keep their tension, and tension does not run up for little gain.
+  h.diagonal().array() += options.regularisation * h.diagonal().mean();
   const VecX lower = (options.tension_min - influence.present_tension.array()).matrix();
   const VecX upper = (options.tension_max - influence.present_tension.array()).matrix();
   const VecX change = to_lengths * minimise_in_box(h, g, lower, upper);

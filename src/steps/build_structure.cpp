@@ -100,6 +100,7 @@ void check_sections(const model::Model& model, const deck::Deck& deck) {
     if (kind != group.kind)
       throw ModelError(fmt::format("group \"{}\": section \"{}\" is for another kind of element", group.name, found->second.section));
   }
+  if (deck.reflector) return;  // a part of a reflector may be switched off while the deck still describes it
   for (const auto& [name, options] : deck.groups) {
     const int group = model.find_group(name);
     const auto in = [&](const auto& elements) {

@@ -1,17 +1,62 @@
 #include <fmt/format.h>
 
-#include <tautline/model/subdivide.hpp>
+#include <tautline/assembly/mechanism.hpp>
+#include <tautline/core/error.hpp>
 #include <tautline/steps/run.hpp>
 
 #include "steps/context.hpp"
 
 namespace tautline::steps {
 
+namespace {
+
+std::string model_text(const model::Model& model) {
+  std::string text = fmt::format("structure  {} nodes, {} cables, {} beams, {} membranes, {:.4g} kg\n", model.nodes.size(),
+                                 model.cables.size(), model.beams.size(), model.membranes.size(), model::total_mass(model));
+  for (const auto& [name, mass] : model::mass_by_group(model)) {
+    const auto selection = model.select(name);
+    text += fmt::format("  {:<20} {:>6} elements {:>12.4g} kg\n", name,
+                        selection.cables.size() + selection.beams.size() + selection.membranes.size(), mass);
+  }
+  return text;
+}
+
+std::string steps_text(const deck::Deck& deck) {
+  std::string text = "steps     ";
+  for (const auto& step : deck.steps) text += fmt::format(" {}", step.name);
+  return text + "\n";
+}
+
+/// Supports of each stage of each equilibrium are looked at on the structure as form-found, not subdivided.
+void foretell_mechanisms(Context& context) {
+  for (const auto& step : context.deck.steps) {
+    if (const auto* form_finding = std::get_if<FormFindingOptions>(&step.options)) {
+      const Json entry = run_step(context, *form_finding);
+      if (entry["status"] != "done")
+        throw ModelError(fmt::format("step \"{}\": {}", step.name, entry["reason"].get<std::string>()));
+    }
+    const auto* equilibrium = std::get_if<EquilibriumOptions>(&step.options);
+    if (equilibrium == nullptr) continue;
+    auto stages = equilibrium->stages;
+    if (stages.empty()) stages.emplace_back();
+    for (const auto& stage : stages) {
+      context.system();
+      context.system().begin_stage(context.boundary(stage.hold, {}, false));
+      if (const auto mechanism = assembly::find_mechanism(context.system(), context.workspace()))
+        throw ModelError(fmt::format("step \"{}\": {}", step.name, mechanism->text));
+    }
+  }
+}
+
+}  // namespace
+
 std::string check(const deck::Deck& deck) {
-  const auto structure = build_structure(deck);
-  model::validate(structure);
-  return fmt::format("{}: {} nodes, {} cables, {} beams, {} membranes\n", deck.path, structure.nodes.size(), structure.cables.size(),
-                     structure.beams.size(), structure.membranes.size());
+  Progress silent;
+  Context context(deck, "", false, silent);
+  model::validate(context.structure);
+  foretell_mechanisms(context);
+  return fmt::format("{}\n{}{}nothing found that would keep it from being solved\n", deck.title, model_text(context.structure),
+                     steps_text(deck));
 }
 
 }  // namespace tautline::steps

@@ -9,6 +9,8 @@
 #include <tautline/output/results.hpp>
 #include <tautline/reflector/perimeter_truss.hpp>
 
+#include "steps/summaries.hpp"
+
 namespace tautline::steps {
 
 Context::Context(const deck::Deck& the_deck, std::string directory, bool pictures, Progress& the_progress)
@@ -31,6 +33,12 @@ void Context::set_system(model::Model mesh) {
   model::validate(mesh);
   system_ = std::make_unique<assembly::System>(std::move(mesh));
   workspace_ = std::make_unique<analysis::Workspace>(system_->new_matrix());
+}
+
+void Context::note_model() {
+  const auto& model = has_system() ? system_->model() : structure;
+  results["model"] = model_json(model, has_system() ? system_->n_dofs() : 0);
+  results["model"]["mass_by_group"] = model::mass_by_group(model);
 }
 
 void Context::save() {

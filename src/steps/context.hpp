@@ -41,6 +41,9 @@ class Context {
   bool has_system() const { return system_ != nullptr; }
   void set_system(model::Model mesh);
 
+  /// Writes the present model's numbers into results.
+  void note_model();
+
   /// DIR/name
   std::string path(const std::string& name) const { return directory_ + "/" + name; }
   /// Writes results.json (rank 0).

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <tautline/assembly/mechanism.hpp>
+#include <tautline/core/error.hpp>
 #include <tautline/model/response.hpp>
 
 #include "steps/context.hpp"
@@ -33,6 +35,9 @@ Json run_stage(Context& context, const StageOptions& stage, const assembly::Boun
   context.progress.say(fmt::format("{} | {}: out-of-balance at the start {:.3e} N", context.step_name, stage.name, start.force));
   const auto path = follow(context, stage.name);
   reached = path.reached;
+  if (path.singular && path.points.empty())
+    if (const auto mechanism = assembly::find_mechanism(system, context.workspace()))
+      throw ModelError(fmt::format("stage \"{}\": {}", stage.name, mechanism->text));
   return {{"name", stage.name},
           {"status", path.reached ? "done" : "not_converged"},
           {"reason", path.reason},

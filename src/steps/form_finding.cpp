@@ -152,9 +152,11 @@ Json form_json(const formfinding::ForceDensityResult& found, double target) {
   return entry;
 }
 
-/// Tensions of the structure as found, nothing displaced.
+/// Tensions of the structure's cables as found, nothing displaced.
 Json found_groups_json(const model::Model& structure) {
-  return groups_json(model::summarise_groups(structure, model::evaluate_response(structure, model::State::reference(structure))));
+  auto groups = model::summarise_groups(structure, model::evaluate_response(structure, model::State::reference(structure)));
+  std::erase_if(groups, [](const auto& entry) { return entry.second.kind != model::ElementKind::cable; });
+  return groups_json(groups);
 }
 
 void draw_convergence(Context& context, const formfinding::ForceDensityResult& found) {

@@ -11,7 +11,7 @@ Json run_step(Context& context, const MeshOptions& options) {
   Json entry = model_json(system.model(), system.n_dofs());
   entry["subdivisions"] = options.subdivide.subdivisions;
   entry["pattern"] = options.subdivide.pattern == model::FacetPattern::mapped ? "mapped" : "structured";
-  context.results["model"] = model_json(system.model(), system.n_dofs());
+  context.note_model();
   entry["status"] = "done";
   return entry;
 }

@@ -48,7 +48,7 @@ void add_performance(Json& entry, const Counters& before, const Counters& after,
   entry["peak_memory_bytes"] = la::peak_memory_bytes();
 }
 
-Json start_results(const deck::Deck& deck, Context& context) {
+Json start_results(const deck::Deck& deck) {
   const auto versions = la::library_versions();
   Json results{{"format", "tautline-results"}, {"version", 1}};
   results["program"] = {{"version", version()}, {"petsc", versions.petsc}, {"slepc", versions.slepc}, {"mumps", versions.mumps},
@@ -56,8 +56,6 @@ Json start_results(const deck::Deck& deck, Context& context) {
   results["deck"] = {{"path", deck.path}, {"sha256", deck.sha256}, {"title", deck.title}, {"parameters", deck.parameters}};
   results["status"] = "interrupted";
   results["reason"] = "the run has not come to its end";
-  results["model"] = model_json(context.structure, 0);
-  results["model"]["mass_by_group"] = model::mass_by_group(context.structure);
   results["steps"] = Json::array();
   results["pictures"] = Json::array();
   return results;
@@ -94,12 +92,7 @@ void write_tables(Context& context) {
 void finish(Context& context, const RunSettings& settings, Clock::time_point start) {
   context.progress.finish();
   la::on_root([&] { write_tables(context); });
-  if (context.has_system()) {
-    auto& model = context.results["model"];
-    const auto by_group = model["mass_by_group"];
-    model = model_json(context.system().model(), context.system().n_dofs());
-    model["mass_by_group"] = by_group;
-  }
+  context.note_model();
   context.results["wall_seconds"] = seconds_since(start);
   context.save();
   la::on_root([&] {
@@ -114,7 +107,8 @@ ExitCode run(const deck::Deck& deck, const RunSettings& settings, Progress& prog
   const auto start = Clock::now();
   la::on_root([&] { output::prepare_directory(settings.directory); });
   Context context(deck, settings.directory, settings.pictures && deck.output.pictures, progress);
-  context.results = start_results(deck, context);
+  context.results = start_results(deck);
+  context.note_model();
   ExitCode code = ExitCode::done;
   std::string status = "done";
   try {

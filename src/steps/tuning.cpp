@@ -95,6 +95,13 @@ Json pass_json(const reflector::SurfaceError& error, double change) {
   return {{"rms", error.rms}, {"max_change", change}, {"rms_area_weighted", error.rms_area_weighted}, {"rms_nodes", error.rms_nodes}};
 }
 
+double least_tension(const assembly::System& system, const std::vector<int>& ties) {
+  const auto response = model::evaluate_response(system.model(), system.state());
+  double least = response.cables[ties[0]].tension;
+  for (const int tie : ties) least = std::min(least, response.cables[tie].tension);
+  return least;
+}
+
 double measure_of(const reflector::SurfaceError& error, const reflector::TuningOptions& options) {
   const bool area = options.method == TuningMethod::sensitivity && options.objective == reflector::TuningObjective::area;
   return area ? error.rms_area_weighted : error.rms;
@@ -111,21 +118,25 @@ analysis::PathSummary make_pass(Context& context, const std::vector<int>& ties, 
 }  // namespace
 
 Json run_step(Context& context, const TuningStepOptions& step) {
-  const auto& options = step.tuning;
+  auto options = step.tuning;
   if (!context.surface) throw ModelError("tuning needs a reflector: this deck has none");
   auto& system = context.system();
   const auto ties = system.model().select(options.ties).cables;
   if (ties.empty()) throw ModelError(fmt::format("tuning: group \"{}\" has no cables", options.ties));
+  if (std::isnan(options.tension_min)) options.tension_min = 0.5 * least_tension(system, ties);
   auto error = measure(context);
   Json entry{{"status", "done"}, {"method", options.method == TuningMethod::rule ? "rule" : "sensitivity"}};
   Json passes = Json::array({pass_json(error, 0)});
   int newton = 0;
   for (int pass = 1; pass <= options.max_passes; ++pass) {
+    const auto state_before = system.state();
+    const auto strains_before = system.strains();
     const VecX change = changes(context, ties, options);
     const auto path = make_pass(context, ties, change, pass);
     newton += path.newton_iterations;
-    const double before = measure_of(error, options);
+    const auto error_before = error;
     error = measure(context);
+    const double before = measure_of(error_before, options), after = measure_of(error, options);
     passes.push_back(pass_json(error, change.cwiseAbs().maxCoeff()));
     context.progress.say(fmt::format("{} | pass {}: RMS {:.4f} mm, largest change {:.3e} m", context.step_name, pass, 1e3 * error.rms,
                                      change.cwiseAbs().maxCoeff()));
@@ -134,7 +145,13 @@ Json run_step(Context& context, const TuningStepOptions& step) {
       entry["reason"] = fmt::format("pass {} {}. Try a smaller max_change or a larger reflector.gap", pass, path.reason);
       break;
     }
-    if (std::abs(before - measure_of(error, options)) <= options.tolerance * before) {
+    if (after > before * (1 + options.tolerance)) {
+      system.set_state(state_before, strains_before);
+      error = error_before;
+      entry["reason"] = fmt::format("pass {} made the error larger ({:.4e} m after {:.4e} m) and was undone", pass, after, before);
+      break;
+    }
+    if (before - after <= options.tolerance * before) {
       entry["reason"] = fmt::format("the RMS changed by less than {:g} of itself in pass {}", options.tolerance, pass);
       break;
     }

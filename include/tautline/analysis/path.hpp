@@ -28,6 +28,7 @@ struct PathSummary {
   bool reached = false;
   std::string reason;             ///< one sentence: reached, or why not and what to try
   std::vector<PathPoint> points;  ///< converged ones, in order
+  bool singular = false;          ///< the last failed attempt met a singular tangent
   int failed_attempts = 0;
   int newton_iterations = 0;      ///< of all attempts
   la::Inertia inertia;            ///< of the tangent at the end

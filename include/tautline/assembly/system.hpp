@@ -44,8 +44,11 @@ class System : public analysis::PathProblem {
   int n_dofs() const noexcept { return 3 * map_.layout.total; }
   double assembly_seconds() const noexcept { return assembly_seconds_; }
 
-  /// Moves to `state`, which must belong to this model; unstressed lengths stay as they are.
+  /// Moves to `state`, which must belong to this model; unstressed lengths stay as they are, or become those of `strains`.
   void set_state(const model::State& state);
+  void set_state(const model::State& state, const std::vector<double>& strains);
+  /// Present initial strain of each cable.
+  std::vector<double> strains() const;
   /// Starts a stage towards `boundary` from the present state. @return what is out of balance there
   OutOfBalance begin_stage(const Boundary& boundary);
   /// New initial strains, one for each cable, reached at lambda = 1 of the stage begun next by begin_stage.

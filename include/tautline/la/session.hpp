@@ -18,6 +18,7 @@ class Session {
   Session& operator=(const Session&) = delete;
 };
 
+/// This process among those of the run; 0 if no session has begun.
 int rank();
 int size();
 

@@ -15,9 +15,10 @@ namespace tautline::output {
 /// LibraryError
 std::string write_report(const std::vector<std::string>& directories);
 
-/// The closing summary on stdout: form-finding, stages, tuning by pass, RMS, tensions, forces, frequencies,
-/// mass.
-std::string summary_text(const nlohmann::ordered_json& results);
+/// The closing summary on stdout: the story of the run step by step, then the figures of the final state.
+/// Nothing is left out of it for a deck of the usual length (some 45 lines).
+/// @param directory where the results are; "": not told
+std::string summary_text(const nlohmann::ordered_json& results, const std::string& directory = "");
 
 /// Table of surface error, tensions, frequencies, time of several results (command `compare`).
 std::string comparison_text(const std::vector<std::string>& directories);

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
 /// What a run has to tell, as headings, figures and tables of text: read once from results.json, then shown
-/// as a page or as plain text. Whatever is missing in the file is missing here, too.
+/// as a page. Whatever is missing in the file is missing here, too.
 
 #include <string>
 #include <utility>
@@ -18,13 +18,13 @@ struct Table {
   std::string title;
   Row header;
   std::vector<Row> rows;
-  bool in_summary = true;  ///< shown in the closing summary on stdout, too
 };
 
 struct Chapter {
   std::string name, kind, status, reason, time;
-  std::vector<Fact> facts;
-  std::vector<Table> tables;
+  std::vector<Fact> facts, surface;
+  std::vector<Table> tables;  ///< how it went
+  std::vector<Table> groups;  ///< forces where it ended
 };
 
 struct Story {
@@ -39,8 +39,13 @@ Story tell(const nlohmann::ordered_json& results);
 
 /// Facts and tables of one step.
 Chapter tell_step(const nlohmann::ordered_json& step, double mass);
+std::vector<Fact> step_facts(const nlohmann::ordered_json& step);
+std::vector<Fact> surface_facts(const nlohmann::ordered_json& surface);
 
-/// The last entry of that name found in the steps, e.g. "surface"; null if there is none.
+/// The last step that has an entry of that name, e.g. "surface"; null if there is none.
+const nlohmann::ordered_json& last_step_with(const nlohmann::ordered_json& results, const char* name);
+
+/// That entry itself.
 const nlohmann::ordered_json& last_of(const nlohmann::ordered_json& results, const char* name);
 
 }  // namespace tautline::output::detail

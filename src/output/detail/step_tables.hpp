@@ -1,0 +1,24 @@
+#pragma once
+/// @file
+/// Lists and groups of results.json as tables of text; a table nobody has figures for has no rows, and its
+/// columns are those that somebody has.
+
+#include <vector>
+
+#include "output/detail/figures.hpp"
+#include "output/detail/story.hpp"
+
+namespace tautline::output::detail {
+
+/// Cables, beams and membranes by group, those of them that there are.
+std::vector<Table> group_tables(const nlohmann::ordered_json& groups);
+
+Table pass_table(const nlohmann::ordered_json& passes);
+Table stage_table(const nlohmann::ordered_json& stages);
+Table convergence_table(const nlohmann::ordered_json& step);
+/// @param mass of the structure [kg], to give effective masses as shares of it; 0: unknown
+Table mode_table(const nlohmann::ordered_json& step, double mass);
+Table buckling_table(const nlohmann::ordered_json& step);
+Table path_table(const nlohmann::ordered_json& path);
+
+}  // namespace tautline::output::detail

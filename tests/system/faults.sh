@@ -1,0 +1,103 @@
+#!/usr/bin/env bash
+# faults.sh CASE: what goes wrong ends with the right exit code, a message that says where, and nothing half-written.
+. "$(dirname "$0")/common.sh"
+
+here=$(cd "$(dirname "$0")" && pwd)
+out=$WORK/results
+run() { local code=$1; shift; expect "$code" "$TAUTLINE" run "$@" -o "$out" --quiet --no-pictures; }
+
+case $1 in
+  bad_deck)
+    run 2 "$SOURCE/tests/decks/bad/many_errors.yaml"
+    says "$WORK/err" 'many_errors\.yaml:[0-9]+:[0-9]+: error: '
+    [ "$(grep -c ': error: ' "$WORK/err")" -gt 2 ] || fail "not all errors were told at once"
+    nothing_in "$out"
+    ;;
+  missing_deck)
+    run 2 "$WORK/nowhere.yaml"
+    says "$WORK/err" 'nowhere\.yaml'
+    nothing_in "$out"
+    ;;
+  deck_is_a_directory)
+    run 2 "$WORK"
+    nothing_in "$out"
+    ;;
+  bad_override)
+    run 2 "$SOURCE/inputs/frame.yaml" --set parameters.no_such_thing=1
+    says "$WORK/err" 'no_such_thing'
+    nothing_in "$out"
+    ;;
+  bad_command_line)
+    expect 2 "$TAUTLINE" run
+    expect 2 "$TAUTLINE" walk "$SOURCE/inputs/frame.yaml"
+    expect 2 "$TAUTLINE" run "$SOURCE/inputs/frame.yaml" --sideways
+    ;;
+  missing_mesh)
+    run 2 "$SOURCE/tests/decks/bad/missing_mesh_file.yaml"
+    nothing_in "$out"
+    ;;
+  mesh_without_group)
+    sed "s|\.\./meshes|$SOURCE/meshes|; s|edge: |border: |" "$SOURCE/inputs/membrane_gmsh.yaml" >"$WORK/deck.yaml"
+    expect 3 "$TAUTLINE" check "$WORK/deck.yaml"
+    run 3 "$WORK/deck.yaml"
+    says "$WORK/err" 'border|edge'
+    nothing_in "$out"
+    ;;
+  coincident_nodes)
+    run 3 "$here/decks/coincident_nodes.yaml"
+    says "$WORK/err" 'strut'
+    nothing_in "$out"
+    ;;
+  mechanism)
+    expect 3 "$TAUTLINE" check "$here/decks/mechanism.yaml"
+    says "$WORK/err" 'mechanism|can move|singular'
+    run 3 "$here/decks/mechanism.yaml"
+    says "$WORK/err" 'mechanism|can move|singular'
+    ;;
+  loose_part)
+    expect 3 "$TAUTLINE" check "$here/decks/loose_part.yaml"
+    says "$WORK/err" 'mechanism|can move|singular|loose|connected'
+    run 3 "$here/decks/loose_part.yaml"
+    ;;
+  pressed_ties)   # the rim is so low that the net would hang above it: ties would have to push
+    run 3 "$SOURCE/inputs/dish_4m.yaml" --set reflector.rim_height=-0.5
+    says "$WORK/err" 'tie'
+    ;;
+  not_converged)
+    run 4 "$here/decks/not_converged.yaml"
+    valid "$out" not_converged
+    says "$out/results.json" '"name": "prestress"'
+    says "$out/results.json" '"reason": "step .*push.*"'
+    has "$WORK/out" "$out"/{nodes.csv,cables.csv,fields.pvd,report.html}     # the last good state
+    says "$out/nodes.csv" '^[0-9]+,'
+    grep -Eqi 'nan|inf' "$out/nodes.csv" && fail "the last state is not a number"
+    ;;
+  form_finding_not_converged)
+    run 4 "$SOURCE/inputs/dish_4m.yaml" --set steps.form_finding.max_iterations=1
+    valid "$out" not_converged
+    ;;
+  unwritable)
+    touch "$WORK/results"                           # a file where the directory should be
+    run 5 "$SOURCE/inputs/frame.yaml"
+    says "$WORK/err" "$WORK/results"
+    out=$WORK/results/below
+    run 5 "$SOURCE/inputs/frame.yaml"
+    out=/proc/tautline_results                      # nobody can make a directory there, not even root
+    run 5 "$SOURCE/inputs/frame.yaml"
+    says "$WORK/err" "/proc/tautline_results"
+    ;;
+  unwritable_on_two_ranks)
+    touch "$WORK/results"
+    expect 5 timeout 60 "${@:2}" "$TAUTLINE" run "$SOURCE/inputs/frame.yaml" -o "$WORK/results" --quiet --no-pictures
+    ;;
+  bad_deck_on_two_ranks)
+    expect 2 timeout 60 "${@:2}" "$TAUTLINE" run "$SOURCE/tests/decks/bad/unknown_material.yaml" -o "$out" --quiet
+    [ "$(grep -c 'unknown_material\.yaml:[0-9]' "$WORK/err")" -eq 1 ] || fail "the error was not told exactly once"
+    nothing_in "$out"
+    ;;
+  mechanism_on_two_ranks)
+    expect 3 timeout 60 "${@:2}" "$TAUTLINE" run "$here/decks/mechanism.yaml" -o "$out" --quiet --no-pictures
+    ;;
+  *) fail "no such case: $1" ;;
+esac
+done_testing

@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# run_deck.sh DECK PICTURES [LAUNCHER...]: the deck runs to its end and leaves all its files. PICTURES: with or without.
+. "$(dirname "$0")/common.sh"
+
+deck=$1 pictures=$2
+shift 2
+options=(--quiet)
+[ "$pictures" = with ] || options+=(--no-pictures)
+
+expect 0 "$@" "$TAUTLINE" run "$deck" -o "$WORK/results" "${options[@]}"
+valid "$WORK/results" done
+has "$WORK"/out "$WORK"/results/{report.html,nodes.csv,cables.csv,beams.csv,cut_list.csv,fields.pvd}
+[ ! -s "$WORK/err" ] || { fail "stderr is not empty with --quiet:"; head -n 5 "$WORK/err" >&2; }
+[ -z "$(find "$WORK/results" -name '*.tmp*' -o -name '.tautline*')" ] || fail "temporary files were left"
+if [ "$pictures" = with ]; then
+  says "$WORK/results/results.json" '"file": "pictures/'
+  while read -r picture; do has "$WORK/results/$picture"; done < <(sed -n 's/.*"file": "\(pictures[^"]*\)".*/\1/p' "$WORK/results/results.json")
+fi
+done_testing
