@@ -29,20 +29,20 @@ p { margin: 4px 0 10px; }
 .status.done { color: var(--good); }
 .alarm { margin: 16px 0; padding: 12px 16px; border-left: 4px solid var(--bad); background: var(--badpaper); border-radius: 4px;
   white-space: pre-line; }
-.cards { display: grid; grid-template-columns: repeat(auto-fill, minmax(165px, 1fr)); gap: 10px; margin: 18px 0 6px; }
-.card { background: var(--card); border-radius: 8px; padding: 12px 14px; }
-.card b { display: block; font-size: 1.35rem; line-height: 1.25; font-variant-numeric: tabular-nums; }
+.cards { display: flex; flex-wrap: wrap; gap: 10px; margin: 18px 0 6px; }
+.card { flex: 1 1 auto; background: var(--card); border-radius: 8px; padding: 10px 13px; white-space: nowrap; }
+.card b { display: block; font-size: 1.2rem; line-height: 1.3; font-variant-numeric: tabular-nums; }
 .card span { color: var(--faint); font-size: .84rem; }
 .wide { overflow-x: auto; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .9rem; }
-th, td { padding: 4px 0 4px 20px; text-align: right; border-bottom: 1px solid var(--line); }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .87rem; }
+th, td { padding: 4px 0 4px 18px; text-align: right; border-bottom: 1px solid var(--line); }
 th { color: var(--faint); font-weight: 600; vertical-align: bottom; }
 th:first-child, td:first-child { text-align: left; padding-left: 0; }
 td { white-space: nowrap; }
-dl { display: grid; grid-template-columns: repeat(auto-fill, minmax(250px, 1fr)); gap: 2px 26px; margin: 8px 0; }
+dl { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(310px, 100%), 1fr)); gap: 2px 30px; margin: 8px 0; }
 dl div { display: flex; justify-content: space-between; gap: 14px; border-bottom: 1px solid var(--line); padding: 3px 0; }
 dt { color: var(--faint); } dd { margin: 0; text-align: right; font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
-.blocks { display: flex; flex-wrap: wrap; gap: 6px 44px; align-items: flex-start; margin: 10px 0 14px; }
+.blocks { display: flex; flex-wrap: wrap; gap: 6px 40px; align-items: flex-start; margin: 10px 0 14px; }
 .blocks > section { max-width: 100%; }
 .pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(460px, 100%), 1fr)); gap: 18px; align-items: start;
   margin: 16px 0; }

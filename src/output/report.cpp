@@ -59,12 +59,15 @@ std::string figure(const Picture& picture) {
       caption, detail::base64(detail::read_file(picture.path)));
 }
 
-/// The pictures of one step, side by side.
-std::string gallery(const std::vector<Picture>& pictures, const std::string& step) {
+std::string gallery(const std::string& figures) {
+  return figures.empty() ? "" : "<div class=\"pictures\">\n" + figures + "</div>\n";
+}
+
+std::string figures_of(const std::vector<Picture>& pictures, const std::string& step) {
   std::string html;
   for (const auto& picture : pictures)
     if (picture.step == step) html += figure(picture);
-  return html.empty() ? "" : "<div class=\"pictures\">\n" + html + "</div>\n";
+  return html;
 }
 
 std::string badge(const std::string& status) {
@@ -93,10 +96,9 @@ std::string tables(const std::vector<detail::Table>& tables) {
   return detail::html_blocks(html);
 }
 
-/// What one step ended with: surface, forces, pictures.
-std::string state(const detail::Chapter& step, const std::vector<Picture>& pictures) {
-  return gallery(pictures, step.name) + detail::html_facts(step.surface, "Surface against the paraboloid") +
-         tables(step.groups);
+/// What one step ended with.
+std::string state(const detail::Chapter& step) {
+  return detail::html_facts(step.surface, "Surface against the paraboloid") + tables(step.groups);
 }
 
 /// The last step that ended with a state, and the last modes; either may be lacking.
@@ -107,14 +109,12 @@ struct Ends {
 
 Ends ends_of(const detail::Story& story, const Json& results) {
   Ends ends;
-  const auto step_with = [&](const char* name) {
-    return detail::text(detail::member(detail::last_step_with(results, name), "name"));
-  };
-  const std::string groups = step_with("groups"), surface = step_with("surface"),
-                    modes = step_with("frequencies");
+  const auto name_of = [](const Json& step) { return detail::text(detail::member(step, "name")); };
+  const std::string state = name_of(detail::last_step_with(results, {"groups", "surface"})),
+                    modes = name_of(detail::last_step_with(results, {"frequencies"}));
   for (const auto& step : story.steps) {
     if (step.name.empty()) continue;
-    if (step.name == (groups.empty() ? surface : groups)) ends.state = &step;
+    if (step.name == state) ends.state = &step;
     if (step.name == modes) ends.modes = &step;
   }
   return ends;
@@ -127,9 +127,13 @@ std::string final_section(const Ends& ends, const std::vector<Picture>& pictures
     html +=
         fmt::format(" <span class=\"faint\">after {}</span>", escape_markup(detail::words(ends.state->name)));
   html += "</h2>\n";
-  if (ends.state != nullptr) html += state(*ends.state, pictures);
-  if (ends.modes != nullptr && ends.modes != ends.state)
-    html += gallery(pictures, ends.modes->name) + tables(ends.modes->tables);
+  const bool apart = ends.modes != nullptr && ends.modes != ends.state;
+  std::string figures;
+  if (ends.state != nullptr) figures += figures_of(pictures, ends.state->name);
+  if (apart) figures += figures_of(pictures, ends.modes->name);
+  html += gallery(figures);
+  if (ends.state != nullptr) html += state(*ends.state);
+  if (apart) html += tables(ends.modes->tables);
   return html + "</section>\n";
 }
 
@@ -149,8 +153,10 @@ std::string step_section(const detail::Chapter& step, const Ends& ends,
   if (&step == ends.modes && &step != ends.state)
     return html + "<p class=\"faint\">Modes: see the final state.</p>\n</section>\n";
   html += tables(step.tables);
-  html += &step == ends.state ? "<p class=\"faint\">Surface, forces and pictures: see the final state.</p>\n"
-                              : state(step, pictures);
+  if (&step == ends.state)
+    html += "<p class=\"faint\">Surface, forces and pictures: see the final state.</p>\n";
+  else
+    html += state(step) + gallery(figures_of(pictures, step.name));
   return html + "</section>\n";
 }
 
@@ -161,9 +167,7 @@ std::string other_pictures(const detail::Story& story, const std::vector<Picture
                                    [&](const detail::Chapter& step) { return step.name == picture.step; });
     if (!shown) html += figure(picture);
   }
-  return html.empty()
-             ? ""
-             : "<section>\n<h2>Pictures</h2>\n<div class=\"pictures\">\n" + html + "</div>\n</section>\n";
+  return html.empty() ? "" : "<section>\n<h2>Pictures</h2>\n" + gallery(html) + "</section>\n";
 }
 
 std::string single_report(const std::string& directory) {

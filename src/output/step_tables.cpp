@@ -116,13 +116,13 @@ std::vector<Table> group_tables(const Json& groups) {
                                       {"tension_rms_from_target", "RMS from target"},
                                       {"slack", "slack"}};
   static constexpr Column beams[] = {{"count", "count"},
-                                     {"axial_min", "least axial [N]", 1, false, rounding},
-                                     {"axial_max", "largest axial [N]", 1, true, rounding},
-                                     {"moment_max", "largest moment [N m]", 1, false, rounding}};
+                                     {"axial_min", "least axial", 1, false, rounding},
+                                     {"axial_max", "largest axial", 1, true, rounding},
+                                     {"moment_max", "largest moment", 1, false, rounding}};
   static constexpr Column membranes[] = {
       {"count", "count"}, {"principal_min", "least"}, {"principal_max", "largest", 1, true}};
   add_group_table(tables, groups, "Cables, tension [N]", "tension_max", cables);
-  add_group_table(tables, groups, "Beams", "axial_max", beams);
+  add_group_table(tables, groups, "Beams, forces [N, N m]", "axial_max", beams);
   add_group_table(tables, groups, "Membranes, principal [N/m]", "principal_max", membranes);
   return tables;
 }

@@ -110,15 +110,16 @@ Table timings(const Json& steps) {
 
 }  // namespace
 
-const Json& last_step_with(const Json& results, const char* name) {
+const Json& last_step_with(const Json& results, std::initializer_list<const char*> names) {
   const Json& steps = member(results, "steps");
   for (auto step = steps.rbegin(); step != steps.rend(); ++step)
-    if (!member(*step, name).is_null()) return *step;
+    for (const char* name : names)
+      if (!member(*step, name).is_null()) return *step;
   return member(Json(), "");
 }
 
 const Json& last_of(const Json& results, const char* name) {
-  return member(last_step_with(results, name), name);
+  return member(last_step_with(results, {name}), name);
 }
 
 Story tell(const Json& results) {

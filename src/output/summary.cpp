@@ -61,7 +61,7 @@ class Summary {
     if (!ranks.is_null()) line += " on " + detail::counted(ranks, "rank", "ranks");
     lines_.push_back(line);
     if (story_.status != "done" && !story_.reason.empty())
-      append(detail::hanging_lines("", 2, story_.reason));
+      append(detail::hanging_lines("", 2, {story_.reason}));
     model();
   }
 
@@ -126,8 +126,8 @@ class Summary {
       if (const auto worst = largest(member(step, "residuals")))
         parts.push_back("largest residual " + show(worst, "", 1, 3));
     }
-    if (const auto factors = list(member(step, "factors"), ", "); !factors.empty())
-      parts.push_back("load factors " + factors);
+    if (const auto factors = list(member(step, "factors")); !factors.empty())
+      parts.push_back("load factors " + join(factors, ", ", all));
   }
 
   static detail::Figure largest(const Json& list) {
@@ -138,7 +138,7 @@ class Summary {
     return result;
   }
 
-  static std::string list(const Json& values, const char* separator) {
+  static Lines list(const Json& values) {
     Lines figures;
     if (values.is_array())
       for (const auto& value : values) figures.push_back(show(value));
@@ -147,7 +147,7 @@ class Summary {
       figures.resize(most_figures);
       figures.push_back(fmt::format("and {} more", more));
     }
-    return join(figures, separator, all);
+    return figures;
   }
 
   void stages(const Json& stages) {
@@ -184,16 +184,15 @@ class Summary {
   }
 
   void final_state() {
-    const Json& with_groups = detail::last_step_with(results_, "groups");
-    const Json& with_surface = detail::last_step_with(results_, "surface");
-    const Json& with_modes = detail::last_step_with(results_, "frequencies");
-    if (with_groups.is_null() && with_surface.is_null() && with_modes.is_null()) return;
-    state_name_ = text(member(with_groups.is_null() ? with_surface : with_groups, "name"));
+    const Json& with_state = detail::last_step_with(results_, {"groups", "surface"});
+    const Json& with_modes = detail::last_step_with(results_, {"frequencies"});
+    if (with_state.is_null() && with_modes.is_null()) return;
+    state_name_ = text(member(with_state, "name"));
     lines_.emplace_back();
     lines_.push_back(state_name_.empty() ? "Final state" : fmt::format("Final state, after {}", state_name_));
-    surface(with_surface);
-    groups(member(with_groups, "groups"));
-    if (const auto frequencies = list(member(with_modes, "frequencies"), ", "); !frequencies.empty())
+    surface(detail::last_step_with(results_, {"surface"}));
+    groups(detail::last_step_with(results_, {"groups"}));
+    if (const auto frequencies = list(member(with_modes, "frequencies")); !frequencies.empty())
       append(detail::hanging_lines("  frequencies [Hz]", first_column + 4, frequencies));
   }
 
@@ -228,10 +227,9 @@ class Summary {
     append(detail::hanging_lines("", first_column + 4, parts));
   }
 
-  void groups(const Json& groups) {
-    auto tables = detail::group_tables(groups);
-    for (auto& table : tables) {
-      table.header[0] = table.title;
+  void groups(const Json& step) {
+    for (auto& table : detail::group_tables(member(step, "groups"))) {
+      table.header[0] = table.title + origin(step);
       state_table(table, most_groups);
     }
   }
@@ -258,12 +256,13 @@ class Summary {
 
   void ending() {
     for (const auto& warning : member(results_, "warnings"))
-      append(detail::hanging_lines("Warning:", 9, text(warning)));
+      append(detail::hanging_lines("Warning:", 9, {text(warning)}));
     if (!directory_.empty())
-      append(detail::hanging_lines("Results:", 9, fmt::format("{} (report.html, results.json)", directory_)));
+      append(detail::hanging_lines("Results:", 9, {directory_ + " (report.html, results.json)"}));
     if (story_.status == "done") return;
-    append(detail::hanging_lines("Not complete:", 14,
-                                 story_.status + (story_.reason.empty() ? "" : ": " + story_.reason)));
+    Lines parts{story_.status};
+    if (!story_.reason.empty()) parts.push_back(story_.reason);
+    append(detail::hanging_lines("Not complete:", 14, parts));
   }
 
   static constexpr std::size_t first_column = 26;

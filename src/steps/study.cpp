@@ -1,6 +1,3 @@
-#include <cmath>
-#include <fstream>
-
 #include <fmt/format.h>
 #include <fmt/os.h>
 
@@ -10,6 +7,7 @@
 #include <tautline/steps/run.hpp>
 
 #include "steps/context.hpp"
+#include "steps/extrapolation.hpp"
 
 namespace tautline::steps {
 
@@ -37,24 +35,15 @@ Json row_of(const Json& results, int subdivisions) {
 
 constexpr const char* measures[] = {"rms", "rms_direct", "rms_best_fit", "rms_area_weighted", "rms_nodes"};
 
-/// Order p and limit f of f_h = f + C h^p through the three finest meshes (Roache 1994), h = 1 / subdivisions.
-/// Empty where the three values do not approach a limit from one side.
 Json extrapolate(const Json& rows, const std::string& measure) {
-  const std::size_t n = rows.size();
-  if (n < 3) return nullptr;
-  const auto value = [&](std::size_t i) { return rows[i]["surface"][measure].get<double>(); };
-  const auto h = [&](std::size_t i) { return 1.0 / rows[i]["subdivisions"].get<int>(); };
-  const double h1 = h(n - 1), h2 = h(n - 2), h3 = h(n - 3), f1 = value(n - 1), f2 = value(n - 2), f3 = value(n - 3);
-  const double wanted = (f3 - f2) / (f2 - f1);
-  const auto ratio = [&](double p) { return (std::pow(h3, p) - std::pow(h2, p)) / (std::pow(h2, p) - std::pow(h1, p)); };
-  double low = 0.05, high = 10;
-  if (!std::isfinite(wanted) || wanted <= ratio(low) || wanted >= ratio(high)) return nullptr;
-  for (int i = 0; i < 100; ++i) {
-    const double middle = (low + high) / 2;
-    (ratio(middle) < wanted ? low : high) = middle;
+  std::vector<double> size, value;
+  for (const auto& row : rows) {
+    size.push_back(1.0 / row["subdivisions"].get<int>());
+    value.push_back(row["surface"][measure].get<double>());
   }
-  const double limit = f1 - (f2 - f1) / (std::pow(h2 / h1, low) - 1) * -1;
-  return {{"order", low}, {"limit", limit}};
+  const auto found = extrapolate_three(size, value);
+  if (!found) return nullptr;
+  return {{"order", found->order}, {"limit", found->limit}};
 }
 
 void write_csv(const std::string& path, const Json& rows) {

@@ -319,6 +319,22 @@ TEST(Tangent, OfCableBeamAndClothTogetherIsTheDerivativeOfTheResidual) {
   EXPECT_LT((tangent - tangent.transpose()).norm(), 1e-14 * tangent.norm());
 }
 
+TEST(SecondVariation, IsTheQuadraticFormOfTheTangent) {
+  System system(two_facets());
+  system.begin_stage({{support({3}, pinned)}, {}, Vec3::Zero()});
+  system.set_state(some_state(system.model()));
+  const MatX tangent = dense_tangent(system);
+  std::vector<double> values(static_cast<std::size_t>(system.n_dofs()));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = system.held()[i] ? 0 : std::sin(1.3 * static_cast<double>(i) + 0.4);
+  const auto& layout = system.layout();
+  la::Vector x(layout);
+  x.write(std::span(values).subspan(3 * layout.first, 3 * layout.local));
+  const Eigen::Map<const VecX> v(values.data(), system.n_dofs());
+  const double expected = v.dot(tangent * v);
+  EXPECT_NEAR(system.second_variation(x), expected, 1e-12 * tangent.norm() * v.squaredNorm());
+}
+
 TEST(Mass, OfARigidTranslationIsThatOfTheStructure) {
   System system(two_facets());
   const auto mass = system.mass();

@@ -74,6 +74,18 @@ TEST(Pictures, ViewBecomesAPng) {
   EXPECT_GT(bytes.size(), 15000u) << "an empty picture of this size takes less than 3 kB";
 }
 
+TEST(Pictures, SlenderDataGetANarrowPicture) {
+  const TemporaryDirectory directory("pictures_slender");
+  View view = dish(4);
+  view.direction = Vec3(0, 0, 1);
+  view.up = Vec3(0, 1, 0);
+  view.width = 900;
+  DRAW_OR_SKIP(view, directory.file("narrow.png"));
+  const auto size = png_size(contents(directory.file("narrow.png")));
+  EXPECT_EQ(size.width, 540u) << "not below six tenths of what was asked for";
+  EXPECT_EQ(size.height, 400u);
+}
+
 TEST(Pictures, ChartBecomesAPng) {
   const TemporaryDirectory directory("pictures_chart");
   Chart chart;

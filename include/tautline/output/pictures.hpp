@@ -33,7 +33,7 @@ struct View {
   bool diverging = false;  ///< blue-white-red about zero (symmetric range) instead of a sequential map
   Vec3 direction{-0.55, -1.0, 0.45};  ///< from the centre towards the camera
   Vec3 up{0, 0, 1};
-  int width = 1400, height = 1000;  ///< pixels; a wide, flat structure gives a picture that is less high
+  int width = 1400, height = 1000;  ///< pixels at most: flat or slender gives less high or less wide
 };
 
 struct Curve {

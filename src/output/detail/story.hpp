@@ -3,6 +3,7 @@
 /// What a run has to tell, as headings, figures and tables of text: read once from results.json, then shown
 /// as a page. Whatever is missing in the file is missing here, too.
 
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,8 +43,9 @@ Chapter tell_step(const nlohmann::ordered_json& step, double mass);
 std::vector<Fact> step_facts(const nlohmann::ordered_json& step);
 std::vector<Fact> surface_facts(const nlohmann::ordered_json& surface);
 
-/// The last step that has an entry of that name, e.g. "surface"; null if there is none.
-const nlohmann::ordered_json& last_step_with(const nlohmann::ordered_json& results, const char* name);
+/// The last step that has an entry of one of the names, e.g. "surface"; null if there is none.
+const nlohmann::ordered_json& last_step_with(const nlohmann::ordered_json& results,
+                                             std::initializer_list<const char*> names);
 
 /// That entry itself.
 const nlohmann::ordered_json& last_of(const nlohmann::ordered_json& results, const char* name);

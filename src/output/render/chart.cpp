@@ -5,7 +5,6 @@
 
 #include <vtkAxis.h>
 #include <vtkBrush.h>
-#include <vtkChartLegend.h>
 #include <vtkChartXY.h>
 #include <vtkContextActor.h>
 #include <vtkContextScene.h>
@@ -124,16 +123,14 @@ void add_curve(vtkChartXY* target, const Curve& curve, std::size_t index) {
   plot->SetMarkerSize(static_cast<float>(9 * scale));
 }
 
-void set_legend(vtkChartXY* target) {
-  target->SetShowLegend(true);
-  auto* legend = target->GetLegend();
-  legend->SetInline(false);  // beside the curves, never over them
-  legend->SetHorizontalAlignment(vtkChartLegend::RIGHT);
-  legend->SetVerticalAlignment(vtkChartLegend::TOP);
-  legend->SetLabelSize(static_cast<int>(18 * scale));
-  legend->SetSymbolWidth(static_cast<int>(36 * scale));
-  legend->SetPadding(static_cast<int>(8 * scale));
-  legend->GetPen()->SetLineType(vtkPen::NO_PEN);
+/// Below the title, where no curve can be. @return its height
+double add_legend(vtkRenderer* renderer, const Chart& chart, double left, double top) {
+  std::vector<LegendEntry> entries;
+  for (std::size_t i = 0; i < chart.curves.size(); ++i) {
+    const auto colour = curve_colour(i);
+    entries.push_back({chart.curves[i].label, {colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0}});
+  }
+  return entries.size() < 2 ? 0 : render::add_legend(renderer, entries, left, chart.width - 25, top);
 }
 
 }  // namespace
@@ -156,7 +153,8 @@ void draw(const Chart& chart, const std::string& png_path) {
   vtkNew<vtkRenderer> renderer;
   renderer->SetBackground(1, 1, 1);
   target.window()->AddRenderer(renderer);
-  const double band = titles_height(chart.title, ""), left = 46, bottom = 44;
+  const double left = 46, bottom = 44, titles = titles_height(chart.title, "");
+  const double band = titles + add_legend(renderer, chart, left, chart.height - titles + 6);
   add_titles(renderer, chart.title, "", chart.width, chart.height);
   add_text(renderer, chart.x_label, 0.5 * (left + chart.width), 12,
            {.size = 20, .horizontal = Align::centre, .max_width = chart.width - 2 * left});
@@ -174,7 +172,7 @@ void draw(const Chart& chart, const std::string& png_path) {
   set_axis(plot_area->GetAxis(vtkAxis::BOTTOM), x, true);
   set_axis(plot_area->GetAxis(vtkAxis::LEFT), y, false);
   for (std::size_t i = 0; i < curves.size(); ++i) add_curve(plot_area, curves[i], i);
-  if (curves.size() > 1) set_legend(plot_area);
+  plot_area->SetShowLegend(false);
   vtkNew<vtkContextActor> actor;
   actor->GetScene()->AddItem(plot_area);
   renderer->AddActor(actor);

@@ -76,6 +76,16 @@ void add_gradient(vtkRenderer* renderer, vtkLookupTable* table, double left, dou
   add_flat(renderer, shapes, 1, {0, 0, 0});
 }
 
+double text_length(vtkRenderer* renderer, const std::string& text, int size) {
+  vtkNew<vtkTextActor> actor;
+  actor->SetInput(text.c_str());
+  actor->GetTextProperty()->SetFontFamilyToArial();
+  actor->GetTextProperty()->SetFontSize(static_cast<int>(size * scale));
+  double box[4];
+  actor->GetBoundingBox(renderer, box);
+  return (box[1] - box[0]) / scale;
+}
+
 }  // namespace
 
 void add_text(vtkRenderer* renderer, const std::string& text, double x, double y, const TextStyle& style) {
@@ -111,6 +121,25 @@ void add_titles(vtkRenderer* renderer, const std::string& title, const std::stri
 
 double titles_height(const std::string& title, const std::string& subtitle) {
   return 28 + (title.empty() ? 0 : 42) + (subtitle.empty() ? 0 : 32);
+}
+
+double add_legend(vtkRenderer* renderer, const std::vector<LegendEntry>& entries, double left, double right,
+                  double top) {
+  constexpr double row = 30, line = 34, gap = 10, between = 34;
+  constexpr int size = 18;
+  double x = left, y = top - 0.5 * row;
+  for (const auto& [label, colour] : entries) {
+    const double length = line + gap + text_length(renderer, label, size);
+    if (x > left && x + length > right) {
+      x = left;
+      y -= row;
+    }
+    add_line(renderer, {{x, y}, {x + line, y}}, 4, colour);
+    add_text(renderer, label, x + line + gap, y,
+             {.size = size, .vertical = Align::centre, .max_width = right - x - line - gap});
+    x += length + between;
+  }
+  return entries.empty() ? 0 : top - y + 0.5 * row;
 }
 
 double colour_bar_width() {

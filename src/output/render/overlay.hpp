@@ -5,6 +5,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include <vtkLookupTable.h>
 #include <vtkRenderer.h>
@@ -33,6 +34,15 @@ void add_titles(vtkRenderer* renderer, const std::string& title, const std::stri
                 int height);
 /// Height that they take.
 double titles_height(const std::string& title, const std::string& subtitle);
+
+struct LegendEntry {
+  std::string label;
+  std::array<double, 3> colour;
+};
+
+/// Labels beside lines of their colours, in rows between `left` and `right` below `top`. @return their height
+double add_legend(vtkRenderer* renderer, const std::vector<LegendEntry>& entries, double left, double right,
+                  double top);
 
 /// Vertical colour bar at the right edge of a picture of `width`, from `bottom` to `top`.
 void add_colour_bar(vtkRenderer* renderer, vtkLookupTable* table, const std::string& title, int width,

@@ -28,11 +28,6 @@ std::string short_power(std::string text) {
   return text;
 }
 
-std::string plain_or_power(double value) {
-  if (value >= 1e-3 && value < 1e6) return fmt::format("{:.6g}", value);
-  return short_power(fmt::format("{:.0e}", value));
-}
-
 }  // namespace
 
 Ticks linear_ticks(double low, double high, int wanted, bool whole) {
@@ -57,13 +52,16 @@ Ticks logarithmic_ticks(double low, double high) {
   Ticks ticks;
   const int first = static_cast<int>(std::floor(std::log10(low))),
             last = static_cast<int>(std::ceil(std::log10(high)));
-  const int decades = last - first, stride = std::max(1, decades / 8);
-  for (int exponent = first; exponent <= last; exponent += stride) {
+  const int decades = last - first, stride = std::max(1, (decades + 7) / 8);
+  const bool powers = low < 1e-3 || high > 1e6;  // all of them alike, but for those about one
+  for (int exponent = first - (first % stride + stride) % stride; exponent <= last; exponent += stride) {
     for (const double factor : {1.0, 2.0, 5.0}) {
       const double value = factor * std::pow(10.0, exponent);
       if ((factor > 1 && decades > 3) || value < low * (1 - 1e-9) || value > high * (1 + 1e-9)) continue;
       ticks.values.push_back(value);
-      ticks.labels.push_back(plain_or_power(value));
+      const bool plain = !powers || (value > 0.09 && value < 101);
+      ticks.labels.push_back(plain ? fmt::format("{:.6g}", value)
+                                   : short_power(fmt::format("{:.0e}", value)));
     }
   }
   return ticks;

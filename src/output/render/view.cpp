@@ -84,33 +84,35 @@ Frame frame_of(const View& view) {
   return frame;
 }
 
-/// Where the data go, in pixels of the picture, and the height of the picture: flat data do not need all of
-/// it.
+/// Where the data go, in pixels of the picture, and its size: flat or slender data do not need all of it.
 struct Layout {
   double left, right, bottom, top;
   double metres_per_pixel;
-  int height;
+  int width, height;
 };
 
 Layout lay_out(const View& view, const Frame& frame) {
   const double band = titles_height(view.title, view.subtitle) + 10;
-  Layout layout{30, view.width - (view.scalar_title.empty() ? 30 : colour_bar_width() + 20),
-                95, view.height - band,
-                0,  view.height};
+  const double beside = view.scalar_title.empty() ? 30 : colour_bar_width() + 20;
+  Layout layout{30, view.width - beside, 95, view.height - band, 0, view.width, view.height};
   const Vec3 extent = frame.high - frame.low;
   const double wide = extent[0] / (layout.right - layout.left),
                high = extent[1] / (layout.top - layout.bottom);
   layout.metres_per_pixel = std::max({wide, high, 1e-9});
-  const double needed = layout.bottom + extent[1] / layout.metres_per_pixel + band;
-  layout.height = static_cast<int>(std::clamp(needed, 0.6 * view.height, 1.0 * view.height));
+  const auto shrunk = [](double needed, int given) {
+    return static_cast<int>(std::clamp(needed, 0.6 * given, 1.0 * given));
+  };
+  layout.height = shrunk(layout.bottom + extent[1] / layout.metres_per_pixel + band, view.height);
+  layout.width = shrunk(layout.left + extent[0] / layout.metres_per_pixel + beside, view.width);
+  layout.right = layout.width - beside;
   layout.top = layout.height - band;
   return layout;
 }
 
 /// Parallel projection with the data centred in their room.
-void place_camera(vtkRenderer* renderer, const View& view, const Frame& frame, const Layout& layout) {
+void place_camera(vtkRenderer* renderer, const Frame& frame, const Layout& layout) {
   const Vec3 extent = frame.high - frame.low, centre = 0.5 * (frame.low + frame.high);
-  const Vec3 shift(0.5 * (layout.left + layout.right - view.width),
+  const Vec3 shift(0.5 * (layout.left + layout.right - layout.width),
                    0.5 * (layout.bottom + layout.top - layout.height), 0);
   const Vec3 focus = frame.axes * (centre - layout.metres_per_pixel * shift);
   const Vec3 eye = focus + frame.axes.col(2) * (extent.norm() + 1.0);
@@ -161,7 +163,8 @@ double mean_side(const ViewLayer& layer) {
   return std::sqrt(2 * area / static_cast<double>(layer.triangles.size()));
 }
 
-void set_looks(vtkActor* actor, const ViewLayer& layer, bool surface, double metres_per_pixel) {
+/// @param even hardly any shade, so that colours are read against the bar
+void set_looks(vtkActor* actor, const ViewLayer& layer, bool surface, bool even, double metres_per_pixel) {
   auto* property = actor->GetProperty();
   property->SetColor(layer.colour[0], layer.colour[1], layer.colour[2]);
   property->SetOpacity(layer.opacity);
@@ -171,9 +174,9 @@ void set_looks(vtkActor* actor, const ViewLayer& layer, bool surface, double met
     return;
   }
   property->SetInterpolationToFlat();
-  property->SetAmbient(0.45);
-  property->SetDiffuse(0.58);
-  if (mean_side(layer) > 14 * metres_per_pixel) {
+  property->SetAmbient(even ? 0.9 : 0.45);
+  property->SetDiffuse(even ? 0.1 : 0.58);
+  if (mean_side(layer) > 28 * metres_per_pixel) {
     property->EdgeVisibilityOn();
     property->SetEdgeColor(0.62, 0.64, 0.67);
     property->SetLineWidth(1.0F * supersampling);
@@ -211,7 +214,7 @@ void add_cells(vtkRenderer* renderer, const View& view, std::size_t index, bool 
   }
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);
-  set_looks(actor, layer, surface, metres_per_pixel);
+  set_looks(actor, layer, surface, view.diverging, metres_per_pixel);
   if (!surface) {
     const double depth = 1e-3 * (frame.high - frame.low).norm();
     const Vec3 shift = depth * (1 + 0.5 * static_cast<double>(index)) * frame.axes.col(2);
@@ -246,21 +249,21 @@ void draw(const View& view, const std::string& png_path) {
   check(view);
   const Frame frame = frame_of(view);
   const Layout layout = lay_out(view, frame);
-  Offscreen target(view.width, layout.height);
+  Offscreen target(layout.width, layout.height);
   vtkNew<vtkRenderer> renderer;
   renderer->SetBackground(1, 1, 1);
   target.window()->AddRenderer(renderer);
   const auto table = colour_table(view.diverging, colour_range(view));
-  place_camera(renderer, view, frame, layout);
+  place_camera(renderer, frame, layout);
   add_light(renderer);
   for (std::size_t i = 0; i < view.layers.size(); ++i)
     for (const bool surface : {true, false})
       add_cells(renderer, view, i, surface, table, frame, layout.metres_per_pixel);
-  add_titles(renderer, view.title, view.subtitle, view.width, layout.height);
+  add_titles(renderer, view.title, view.subtitle, layout.width, layout.height);
   if (!view.scalar_title.empty())
-    add_colour_bar(renderer, table, view.scalar_title, view.width, layout.bottom, layout.top - 20);
+    add_colour_bar(renderer, table, view.scalar_title, layout.width, layout.bottom, layout.top - 20);
   add_axes(renderer, frame.axes.leftCols<2>());
-  add_scale(renderer, layout.metres_per_pixel, view.width);
+  add_scale(renderer, layout.metres_per_pixel, layout.width);
   renderer->ResetCameraClippingRange();
   target.write(png_path);
 }

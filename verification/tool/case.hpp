@@ -1,0 +1,51 @@
+#pragma once
+/// @file
+/// A verification case: expected.yaml as read, and what came of it.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace verify {
+
+/// One run of the program.
+struct Run {
+  std::string name;
+  std::string deck;                    ///< relative to the case, else to the repository
+  std::vector<std::string> overrides;  ///< path.to.key=value
+  int ranks = 1;
+};
+
+enum class Check { equal, at_most, at_least, report_only };
+enum class Origin { analytic, published, other_code, regression, requirement };
+
+/// A number with its reference.
+struct Quantity {
+  std::string name, value, unit;      ///< value: an expression
+  std::string reference;              ///< an expression, most often just a number
+  Check check = Check::equal;
+  std::optional<double> relative, absolute;  ///< tolerance
+  Origin origin = Origin::regression;
+  std::string source, note;
+};
+
+struct Case {
+  std::string name, directory;
+  std::vector<Run> runs;
+  std::vector<Quantity> quantities;
+};
+
+/// A quantity as found.
+struct Result {
+  Quantity quantity;
+  double ours = 0, reference = 0;
+  bool passed = false;
+  std::string problem;  ///< why it did not pass, if the numbers do not say so
+};
+
+/// @throws std::runtime_error that names the case and what is wrong in its expected.yaml
+Case read_case(const std::string& directory);
+
+std::string to_string(Origin origin);
+
+}  // namespace verify

@@ -1,0 +1,28 @@
+#pragma once
+/// @file
+/// The results as Markdown.
+
+#include <string>
+#include <vector>
+
+#include "case.hpp"
+
+namespace verify {
+
+struct CaseResults {
+  Case the_case;
+  std::vector<Result> results;
+};
+
+/// Difference from the reference: relative where that means something, else absolute.
+std::string difference_text(const Result& result);
+std::string tolerance_text(const Quantity& quantity);
+/// ok, shown (not asserted) or FAILED.
+std::string verdict(const Result& result);
+
+/// README of the case, its table, its notes, how it was run.
+std::string case_page(const CaseResults& results);
+/// All cases in one table.
+std::string overview_page(const std::vector<CaseResults>& cases);
+
+}  // namespace verify
