@@ -1,9 +1,9 @@
 #include <tautline/assembly/system.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include <tautline/core/stopwatch.hpp>
 #include <tautline/element/cable.hpp>
 #include <tautline/la/session.hpp>
 #include <tautline/model/element_data.hpp>
@@ -15,19 +15,6 @@ namespace tautline::assembly {
 using element::Want;
 
 namespace {
-
-/// Adds the time of its life to a sum.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& sum_;
-  std::chrono::steady_clock::time_point start_;
-};
 
 template <class Blocks, class Force>
 void scatter(const Blocks& blocks, const Force& values, std::vector<double>& force, std::vector<double>& magnitude) {

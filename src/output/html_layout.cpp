@@ -44,9 +44,8 @@ dl div { display: flex; justify-content: space-between; gap: 14px; border-bottom
 dt { color: var(--faint); } dd { margin: 0; text-align: right; font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
 .blocks { display: flex; flex-wrap: wrap; gap: 6px 40px; align-items: flex-start; margin: 10px 0 14px; }
 .blocks > section { max-width: 100%; }
-.pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(460px, 100%), 1fr)); gap: 18px; align-items: start;
-  margin: 16px 0; }
-figure { margin: 0; max-width: 640px; }
+.pictures { columns: 2 440px; column-gap: 18px; margin: 16px 0; }
+figure { margin: 0 0 18px; max-width: 640px; break-inside: avoid; }
 figure img { display: block; width: 100%; height: auto; border-radius: 8px; border: 1px solid var(--line); background: #fff;
   cursor: zoom-in; }
 figure input { position: absolute; opacity: 0; }

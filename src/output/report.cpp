@@ -120,9 +120,10 @@ Ends ends_of(const detail::Story& story, const Json& results) {
   return ends;
 }
 
-std::string final_section(const Ends& ends, const std::vector<Picture>& pictures) {
+/// @param whole whether the run came to its end
+std::string final_section(const Ends& ends, bool whole, const std::vector<Picture>& pictures) {
   if (ends.state == nullptr && ends.modes == nullptr) return "";
-  std::string html = "<section>\n<h2>Final state";
+  std::string html = fmt::format("<section>\n<h2>{} state", whole ? "Final" : "Last");
   if (ends.state != nullptr)
     html +=
         fmt::format(" <span class=\"faint\">after {}</span>", escape_markup(detail::words(ends.state->name)));
@@ -137,7 +138,7 @@ std::string final_section(const Ends& ends, const std::vector<Picture>& pictures
   return html + "</section>\n";
 }
 
-/// How a step went; what it ended with, too, unless the section of the final state shows it.
+/// How a step went; what it ended with, too, unless the first section shows it.
 std::string step_section(const detail::Chapter& step, const Ends& ends,
                          const std::vector<Picture>& pictures) {
   const std::string name = detail::capitalised(detail::words(step.name));
@@ -151,10 +152,10 @@ std::string step_section(const detail::Chapter& step, const Ends& ends,
   }
   html += detail::html_facts(step.facts);
   if (&step == ends.modes && &step != ends.state)
-    return html + "<p class=\"faint\">Modes: see the final state.</p>\n</section>\n";
+    return html + "<p class=\"faint\">Modes: see above.</p>\n</section>\n";
   html += tables(step.tables);
   if (&step == ends.state)
-    html += "<p class=\"faint\">Surface, forces and pictures: see the final state.</p>\n";
+    html += "<p class=\"faint\">Surface, forces and pictures: see above.</p>\n";
   else
     html += state(step) + gallery(figures_of(pictures, step.name));
   return html + "</section>\n";
@@ -175,7 +176,7 @@ std::string single_report(const std::string& directory) {
   const auto story = detail::tell(results);
   const auto pictures = pictures_of(directory, results);
   const Ends ends = ends_of(story, results);
-  std::string body = heading(story, results) + final_section(ends, pictures);
+  std::string body = heading(story, results) + final_section(ends, story.status == "done", pictures);
   if (!story.model.empty())
     body += "<section>\n<h2>Structure</h2>\n" + detail::html_facts(story.model) + "</section>\n";
   for (const auto& step : story.steps) body += step_section(step, ends, pictures);

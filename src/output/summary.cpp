@@ -189,7 +189,8 @@ class Summary {
     if (with_state.is_null() && with_modes.is_null()) return;
     state_name_ = text(member(with_state, "name"));
     lines_.emplace_back();
-    lines_.push_back(state_name_.empty() ? "Final state" : fmt::format("Final state, after {}", state_name_));
+    const char* heading = story_.status == "done" ? "Final state" : "Last state";
+    lines_.push_back(state_name_.empty() ? heading : fmt::format("{}, after {}", heading, state_name_));
     surface(detail::last_step_with(results_, {"surface"}));
     groups(detail::last_step_with(results_, {"groups"}));
     if (const auto frequencies = list(member(with_modes, "frequencies")); !frequencies.empty())

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
+#include <tautline/core/stopwatch.hpp>
 #include <tautline/la/session.hpp>
 #include <tautline/output/results.hpp>
 #include <tautline/reflector/perimeter_truss.hpp>
@@ -48,6 +49,7 @@ void Context::save() {
 template <class Picture>
 void Context::draw_any(const std::string& name, const std::string& caption, const Picture& picture) {
   if (!pictures_ || !root_) return;
+  const Stopwatch watch(output_seconds_);
   const std::string file = fmt::format("pictures/{}_{}.png", step_name, name);
   try {
     std::filesystem::create_directories(path("pictures"));
@@ -70,6 +72,7 @@ void Context::draw(const std::string& name, const std::string& caption, const ou
 
 void Context::write_fields(const std::string& name, const output::FieldGrid& grid) {
   if (!deck.output.fields) return;
+  const Stopwatch watch(output_seconds_);
   const auto& ranks = system().dof_map().node_rank;
   std::vector<int> owner;
   for (const auto& line : grid.lines) owner.push_back(ranks[line[0]]);

@@ -32,6 +32,8 @@ class Context {
   std::string step_name;                          ///< of the step in hand
   Json results;                                   ///< the whole results.json
 
+  /// Time spent on pictures and files so far [s].
+  double output_seconds() const { return output_seconds_; }
   bool is_root() const { return root_; }
   bool draws() const { return pictures_; }
 
@@ -62,6 +64,7 @@ class Context {
 
   std::string directory_;
   bool pictures_, root_;
+  double output_seconds_ = 0;
   std::unique_ptr<assembly::System> system_;
   std::unique_ptr<analysis::Workspace> workspace_;
   output::FieldSeries fields_;

@@ -1,7 +1,10 @@
+#include <optional>
+
 #include <fmt/format.h>
 
 #include <tautline/assembly/mechanism.hpp>
 #include <tautline/core/error.hpp>
+#include <tautline/core/stopwatch.hpp>
 #include <tautline/model/response.hpp>
 
 #include "steps/context.hpp"
@@ -31,9 +34,12 @@ Json newton_table(const analysis::PathSummary& path) {
 /// One stage: returns its entry; `reached` says whether lambda came to 1.
 Json run_stage(Context& context, const StageOptions& stage, const assembly::Boundary& boundary, bool& reached) {
   auto& system = context.system();
+  double seconds = 0;
+  auto watch = std::make_optional<Stopwatch>(seconds);
   const auto start = system.begin_stage(boundary);
   context.progress.say(fmt::format("{} | {}: out-of-balance at the start {:.3e} N", context.step_name, stage.name, start.force));
   const auto path = follow(context, stage.name);
+  watch.reset();
   reached = path.reached;
   if (path.singular && path.points.empty())
     if (const auto mechanism = assembly::find_mechanism(system, context.workspace()))
@@ -49,7 +55,8 @@ Json run_stage(Context& context, const StageOptions& stage, const assembly::Boun
           {"null_pivots", path.inertia.null},
           {"step0_out_of_balance", above_rounding(start.force, 1e-12)},
           {"step0_out_of_balance_moment", above_rounding(start.moment, 1e-12)},
-          {"newton", newton_table(path)}};
+          {"newton", newton_table(path)},
+          {"wall_seconds", seconds}};
 }
 
 }  // namespace

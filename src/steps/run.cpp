@@ -26,24 +26,26 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 /// Counters of the system at one moment, for the difference that a step makes.
 struct Counters {
   la::SolverTimings solver;
-  double assembly = 0;
+  double assembly = 0, output = 0;
 
   static Counters of(Context& context) {
-    if (!context.has_system()) return {};
-    return {context.workspace().solver.timings(), context.system().assembly_seconds()};
+    if (!context.has_system()) return {{}, 0, context.output_seconds()};
+    return {context.workspace().solver.timings(), context.system().assembly_seconds(), context.output_seconds()};
   }
 };
 
 void add_performance(Json& entry, const Counters& before, const Counters& after, double wall) {
   const bool renewed = after.solver.factorisations < before.solver.factorisations || after.assembly < before.assembly;
-  const Counters base = renewed ? Counters{} : before;
+  const Counters base = renewed ? Counters{{}, 0, before.output} : before;
   const double factorisation = after.solver.factorisation - base.solver.factorisation;
   const double solve = after.solver.solve - base.solver.solve, assembly = after.assembly - base.assembly;
+  const double output = after.output - base.output;
   entry["wall_seconds"] = wall;
   entry["timings"] = {{"assembly", assembly},
                       {"factorisation", factorisation},
                       {"solve", solve},
-                      {"other", std::max(0.0, wall - factorisation - solve - assembly)}};
+                      {"output", output},
+                      {"other", std::max(0.0, wall - factorisation - solve - assembly - output)}};
   entry["factorisations"] = after.solver.factorisations - base.solver.factorisations;
   entry["peak_memory_bytes"] = la::peak_memory_bytes();
 }

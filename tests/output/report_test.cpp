@@ -126,6 +126,8 @@ TEST(Report, SaysOnTopWhenTheRunIsNotComplete) {
   ASSERT_NE(told, std::string::npos);
   EXPECT_LT(told, html.find("Structure"));
   EXPECT_TRUE(holds(html, "residual 3 N &gt; 1e-6 N"));
+  EXPECT_TRUE(holds(html, "Last state")) << "not final";
+  EXPECT_FALSE(holds(html, "Final state"));
   EXPECT_TRUE(holds(html, "no &lt;pictures&gt;"));
 }
 
@@ -254,7 +256,7 @@ TEST(Summary, SaysAtBothEndsThatTheRunIsNotComplete) {
   EXPECT_TRUE(holds(lines[1], "no equilibrium at lambda 0.25")) << text;
   EXPECT_TRUE(holds(line_with(text, "NOT CONVERGED"), "load")) << text;
   EXPECT_EQ(lines.back(), "Not complete: not converged, step \"load\": no equilibrium at lambda 0.25");
-  EXPECT_TRUE(holds(text, "Final state, after load")) << text;
+  EXPECT_TRUE(holds(text, "Last state, after load")) << text;
   EXPECT_FALSE(holds(text, "Hz")) << text;
 }
 

@@ -1,8 +1,9 @@
 /// @file
-/// Compares two results.json: same structure, same texts, numbers equal to a relative tolerance. What depends on the
-/// machine (times, memory) or on the number of processes is left out.
+/// Compares two results.json: same structure, same texts, numbers equal to a relative tolerance. What depends
+/// on the machine (times, memory) or on the number of processes is left out.
 ///
-/// usage: compare_results A B [relative tolerance, default 1e-9]     exit code 0: equal, 1: different, 2: unreadable
+/// usage: compare_results A B [relative tolerance, default 1e-9]     exit code 0: equal, 1: different, 2:
+/// unreadable
 
 #include <algorithm>
 #include <cmath>
@@ -37,13 +38,16 @@ class Comparison {
   bool equal() const { return others_.empty() && worst() <= tolerance_; }
 
   void print() {
-    fmt::print("{} numbers compared, {} beyond {:g} relative, largest difference {:.3g}\n", n_numbers_, n_beyond(), tolerance_, worst());
+    fmt::print("{} numbers compared, {} beyond {:g} relative, largest difference {:.3g}\n", n_numbers_,
+               n_beyond(), tolerance_, worst());
     for (const auto& text : others_) fmt::print("  {}\n", text);
-    std::sort(numbers_.begin(), numbers_.end(), [](const auto& x, const auto& y) { return x.relative > y.relative; });
+    std::sort(numbers_.begin(), numbers_.end(),
+              [](const auto& x, const auto& y) { return x.relative > y.relative; });
     constexpr std::size_t most = 20;
     for (std::size_t i = 0; i < std::min(numbers_.size(), most); ++i) {
       const auto& d = numbers_[i];
-      if (i < 3 || d.relative > tolerance_) fmt::print("  {:<60} {:.17g}  {:.17g}  ({:.2e})\n", d.path, d.a, d.b, d.relative);
+      if (i < 3 || d.relative > tolerance_)
+        fmt::print("  {:<60} {:.17g}  {:.17g}  ({:.2e})\n", d.path, d.a, d.b, d.relative);
     }
   }
 
@@ -63,19 +67,25 @@ class Comparison {
   void compare_objects(const Json& a, const Json& b, const std::string& path) {
     for (const auto& [key, value] : a.items()) {
       if (left_out.count(key) > 0) continue;
-      if (b.contains(key)) compare(value, b[key], path + "/" + key);
-      else others_.push_back(fmt::format("{}/{} is missing in the second file", path, key));
+      if (b.contains(key))
+        compare(value, b[key], path + "/" + key);
+      else
+        others_.push_back(fmt::format("{}/{} is missing in the second file", path, key));
     }
     for (const auto& [key, value] : b.items())
       if (!a.contains(key)) others_.push_back(fmt::format("{}/{} is missing in the first file", path, key));
   }
 
   void compare_arrays(const Json& a, const Json& b, const std::string& path) {
-    if (a.size() != b.size()) others_.push_back(fmt::format("{} has {} entries and {} entries", path, a.size(), b.size()));
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) compare(a[i], b[i], fmt::format("{}/{}", path, i));
+    if (a.size() != b.size())
+      others_.push_back(fmt::format("{} has {} entries and {} entries", path, a.size(), b.size()));
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+      compare(a[i], b[i], fmt::format("{}/{}", path, i));
   }
 
-  void other(const std::string& path, const Json& a, const Json& b) { others_.push_back(fmt::format("{}: {} and {}", path, a.dump(), b.dump())); }
+  void other(const std::string& path, const Json& a, const Json& b) {
+    others_.push_back(fmt::format("{}: {} and {}", path, a.dump(), b.dump()));
+  }
 
   double worst() const {
     double worst = 0;
@@ -84,7 +94,8 @@ class Comparison {
   }
 
   std::size_t n_beyond() const {
-    return static_cast<std::size_t>(std::count_if(numbers_.begin(), numbers_.end(), [&](const auto& d) { return d.relative > tolerance_; }));
+    return static_cast<std::size_t>(std::count_if(numbers_.begin(), numbers_.end(),
+                                                  [&](const auto& d) { return d.relative > tolerance_; }));
   }
 
   double tolerance_;

@@ -27,7 +27,8 @@ void know_keys(const YAML::Node& node, const std::set<std::string>& known) {
 
 std::string text(const YAML::Node& node, const char* key, bool required = false) {
   if (node[key]) return node[key].as<std::string>();
-  if (required) throw std::runtime_error(fmt::format("line {}: \"{}\" is missing", node.Mark().line + 1, key));
+  if (required)
+    throw std::runtime_error(fmt::format("line {}: \"{}\" is missing", node.Mark().line + 1, key));
   return {};
 }
 
@@ -40,23 +41,28 @@ Run read_run(const YAML::Node& node) {
 }
 
 Check read_check(const YAML::Node& node) {
-  const int given = (node["relative"] || node["absolute"]) + bool(node["at_most"]) + bool(node["at_least"]) + bool(node["report_only"]);
+  const int given = (node["relative"] || node["absolute"]) + bool(node["at_most"]) + bool(node["at_least"]) +
+                    bool(node["report_only"]);
   if (given != 1)
-    throw std::runtime_error(fmt::format("line {}: one of relative or absolute (tolerance), at_most, at_least, report_only is needed",
-                                         node.Mark().line + 1));
+    throw std::runtime_error(fmt::format(
+        "line {}: one of relative or absolute (tolerance), at_most, at_least, report_only is needed",
+        node.Mark().line + 1));
   if (node["at_most"]) return Check::at_most;
   if (node["at_least"]) return Check::at_least;
   return node["report_only"] ? Check::report_only : Check::equal;
 }
 
 Quantity read_quantity(const YAML::Node& node) {
-  know_keys(node, {"name", "value", "unit", "reference", "relative", "absolute", "at_most", "at_least", "report_only", "origin", "source", "note"});
+  know_keys(node, {"name", "value", "unit", "reference", "relative", "absolute", "at_most", "at_least",
+                   "report_only", "origin", "source", "note"});
   Quantity q;
   q.name = text(node, "name", true);
   q.value = text(node, "value", true);
   q.unit = text(node, "unit");
   q.check = read_check(node);
-  q.reference = q.check == Check::at_most ? text(node, "at_most") : q.check == Check::at_least ? text(node, "at_least") : text(node, "reference", true);
+  q.reference = q.check == Check::at_most    ? text(node, "at_most")
+                : q.check == Check::at_least ? text(node, "at_least")
+                                             : text(node, "reference", true);
   if (node["relative"]) q.relative = node["relative"].as<double>();
   if (node["absolute"]) q.absolute = node["absolute"].as<double>();
   const auto origin = origins.find(text(node, "origin", true));
@@ -64,8 +70,10 @@ Quantity read_quantity(const YAML::Node& node) {
   q.origin = origin->second;
   q.source = text(node, "source");
   q.note = text(node, "note");
-  if (q.check == Check::report_only && q.note.empty()) throw std::runtime_error(q.name + ": report_only needs a note that says why");
-  if (q.origin == Origin::published && q.source.empty()) throw std::runtime_error(q.name + ": a published number needs its source");
+  if (q.check == Check::report_only && q.note.empty())
+    throw std::runtime_error(q.name + ": report_only needs a note that says why");
+  if (q.origin == Origin::published && q.source.empty())
+    throw std::runtime_error(q.name + ": a published number needs its source");
   return q;
 }
 
@@ -87,7 +95,8 @@ Case read_case(const std::string& directory) {
 }
 
 std::string to_string(Origin origin) {
-  const auto found = std::find_if(origins.begin(), origins.end(), [&](const auto& pair) { return pair.second == origin; });
+  const auto found =
+      std::find_if(origins.begin(), origins.end(), [&](const auto& pair) { return pair.second == origin; });
   return found == origins.end() ? "" : found->first;
 }
 

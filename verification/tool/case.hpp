@@ -21,8 +21,8 @@ enum class Origin { analytic, published, other_code, regression, requirement };
 
 /// A number with its reference.
 struct Quantity {
-  std::string name, value, unit;      ///< value: an expression
-  std::string reference;              ///< an expression, most often just a number
+  std::string name, value, unit;  ///< value: an expression
+  std::string reference;          ///< an expression, most often just a number
   Check check = Check::equal;
   std::optional<double> relative, absolute;  ///< tolerance
   Origin origin = Origin::regression;

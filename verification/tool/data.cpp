@@ -21,7 +21,9 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-bool is_index(const std::string& token) { return !token.empty() && token.find_first_not_of("0123456789") == std::string::npos; }
+bool is_index(const std::string& token) {
+  return !token.empty() && token.find_first_not_of("0123456789") == std::string::npos;
+}
 
 /// The entry of a list that a token of a pointer means, or null.
 const Json* entry(const Json& list, const std::string& token) {
@@ -29,15 +31,18 @@ const Json* entry(const Json& list, const std::string& token) {
   if (token == "first") return &list.front();
   if (token == "last") return &list.back();
   if (is_index(token)) return std::stoul(token) < list.size() ? &list[std::stoul(token)] : nullptr;
-  const auto found = std::find_if(list.begin(), list.end(), [&](const Json& e) { return e.is_object() && e.value("name", "") == token; });
+  const auto found = std::find_if(
+      list.begin(), list.end(), [&](const Json& e) { return e.is_object() && e.value("name", "") == token; });
   return found == list.end() ? nullptr : &*found;
 }
 
 void collect(const Json& value, Values& values) {
-  if (value.is_number()) values.push_back(value.get<double>());
+  if (value.is_number())
+    values.push_back(value.get<double>());
   else if (value.is_array())
     for (const auto& e : value) collect(e, values);
-  else throw std::runtime_error("is no number");
+  else
+    throw std::runtime_error("is no number");
 }
 
 void walk(const Json& value, const std::vector<std::string>& tokens, std::size_t i, Values& values) {
@@ -49,8 +54,10 @@ void walk(const Json& value, const std::vector<std::string>& tokens, std::size_t
     return;
   }
   const Json* next = nullptr;
-  if (value.is_array()) next = entry(value, token);
-  else if (value.is_object() && value.contains(token)) next = &value[token];
+  if (value.is_array())
+    next = entry(value, token);
+  else if (value.is_object() && value.contains(token))
+    next = &value[token];
   if (next == nullptr) throw std::runtime_error(fmt::format("there is no \"{}\"", token));
   walk(*next, tokens, i + 1, values);
 }
@@ -73,7 +80,8 @@ Table read_table(const std::string& path) {
 
 double number(const Table& table, const std::vector<std::string>& row, const std::string& column) {
   const auto found = table.columns.find(column);
-  if (found == table.columns.end()) throw std::runtime_error(fmt::format("there is no column \"{}\"", column));
+  if (found == table.columns.end())
+    throw std::runtime_error(fmt::format("there is no column \"{}\"", column));
   return std::stod(row.at(found->second));
 }
 
@@ -83,7 +91,8 @@ bool fulfils(const Table& table, const std::vector<std::string>& row, const std:
     return number(table, row, condition.substr(0, at)) <= std::stod(condition.substr(at + 2));
   const auto at = condition.find('=');
   const auto column = table.columns.find(condition.substr(0, at));
-  if (at == std::string::npos || column == table.columns.end()) throw std::runtime_error(fmt::format("condition \"{}\" means nothing", condition));
+  if (at == std::string::npos || column == table.columns.end())
+    throw std::runtime_error(fmt::format("condition \"{}\" means nothing", condition));
   return row.at(column->second) == condition.substr(at + 1);
 }
 
@@ -112,18 +121,22 @@ Values Data::column(const std::string& reference) {
   const auto hash = reference.find('#'), question = reference.find('?');
   if (hash == std::string::npos) throw std::runtime_error("is neither a pointer nor a column");
   const Table& from = table(reference.substr(0, hash));
-  const std::string name = reference.substr(hash + 1, question == std::string::npos ? question : question - hash - 1);
+  const std::string name =
+      reference.substr(hash + 1, question == std::string::npos ? question : question - hash - 1);
   std::vector<std::string> conditions;
   std::vector<bool> inside(from.rows.size(), true);
   if (question != std::string::npos)
     for (const auto& condition : split(reference.substr(question + 1), '&')) {
-      if (condition.rfind("within=", 0) == 0) inside = within(from, std::stod(condition.substr(7)));
-      else conditions.push_back(condition);
+      if (condition.rfind("within=", 0) == 0)
+        inside = within(from, std::stod(condition.substr(7)));
+      else
+        conditions.push_back(condition);
     }
   Values values;
   for (std::size_t i = 0; i < from.rows.size(); ++i) {
     const auto& row = from.rows[i];
-    if (inside[i] && std::all_of(conditions.begin(), conditions.end(), [&](const auto& c) { return fulfils(from, row, c); }))
+    if (inside[i] && std::all_of(conditions.begin(), conditions.end(),
+                                 [&](const auto& c) { return fulfils(from, row, c); }))
       values.push_back(number(from, row, name));
   }
   return values;
@@ -139,7 +152,8 @@ std::vector<bool> Data::within(const Table& from, double radius) {
   const Table& nodes = table("nodes.csv");
   std::map<int, double> distance;
   for (const auto& row : nodes.rows)
-    distance[static_cast<int>(number(nodes, row, "id"))] = std::hypot(number(nodes, row, "x"), number(nodes, row, "y"));
+    distance[static_cast<int>(number(nodes, row, "id"))] =
+        std::hypot(number(nodes, row, "x"), number(nodes, row, "y"));
   std::vector<bool> inside;
   const bool elements = from.columns.count("node_1") > 0;
   for (const auto& row : from.rows) {

@@ -25,10 +25,11 @@ class Data {
 
   /// @brief Numbers by reference. @throws std::runtime_error that names what is missing
   ///
-  /// "/steps/tuning/surface/rms": a pointer into results.json; entries of a list are named by index, by `first` or `last`, by
-  /// their "name", or by `*` for all of them.
-  /// "cables.csv#tension?group=front_net&within=5": a column, with conditions on others. `within`: nodes, or both ends of
-  /// elements, no farther from the z axis than that, by nodes.csv. A condition "id<=10" compares numbers.
+  /// "/steps/tuning/surface/rms": a pointer into results.json; entries of a list are named by index, by
+  /// `first` or `last`, by their "name", or by `*` for all of them.
+  /// "cables.csv#tension?group=front_net&within=5": a column, with conditions on others. `within`: nodes, or
+  /// both ends of elements, no farther from the z axis than that, by nodes.csv. A condition "id<=10" compares
+  /// numbers.
   Values find(const std::string& reference);
 
  private:

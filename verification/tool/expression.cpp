@@ -19,18 +19,24 @@ using Binary = double (*)(double, double);
 using Elementwise = double (*)(double);
 using Reduction = double (*)(const Values&);
 
-double mean(const Values& v) { return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size()); }
+double mean(const Values& v) {
+  return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+}
 
 const std::map<std::string, Elementwise> elementwise{
-    {"abs", std::fabs}, {"sqrt", std::sqrt}, {"sin", std::sin},   {"cos", std::cos},
-    {"tan", std::tan},  {"sinh", std::sinh}, {"cosh", std::cosh}, {"asinh", std::asinh}};
+    {"abs", std::fabs},  {"sqrt", std::sqrt}, {"sin", std::sin},     {"cos", std::cos}, {"tan", std::tan},
+    {"sinh", std::sinh}, {"cosh", std::cosh}, {"asinh", std::asinh}, {"log", std::log}};
 
 const std::map<std::string, Reduction> reductions{
     {"min", [](const Values& v) { return *std::min_element(v.begin(), v.end()); }},
     {"max", [](const Values& v) { return *std::max_element(v.begin(), v.end()); }},
     {"sum", [](const Values& v) { return std::accumulate(v.begin(), v.end(), 0.0); }},
     {"mean", mean},
-    {"rms", [](const Values& v) { return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0) / static_cast<double>(v.size())); }},
+    {"rms",
+     [](const Values& v) {
+       return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0) /
+                        static_cast<double>(v.size()));
+     }},
     {"size", [](const Values& v) { return static_cast<double>(v.size()); }},
     {"first", [](const Values& v) { return v.front(); }},
     {"last", [](const Values& v) { return v.back(); }}};
@@ -50,18 +56,24 @@ class Parser {
   Values sum() {
     Values value = product();
     while (true) {
-      if (take('+')) value = combine(value, product(), [](double a, double b) { return a + b; });
-      else if (take('-')) value = combine(value, product(), [](double a, double b) { return a - b; });
-      else return value;
+      if (take('+'))
+        value = combine(value, product(), [](double a, double b) { return a + b; });
+      else if (take('-'))
+        value = combine(value, product(), [](double a, double b) { return a - b; });
+      else
+        return value;
     }
   }
 
   Values product() {
     Values value = power();
     while (true) {
-      if (take('*')) value = combine(value, power(), [](double a, double b) { return a * b; });
-      else if (take('/')) value = combine(value, power(), [](double a, double b) { return a / b; });
-      else return value;
+      if (take('*'))
+        value = combine(value, power(), [](double a, double b) { return a * b; });
+      else if (take('/'))
+        value = combine(value, power(), [](double a, double b) { return a / b; });
+      else
+        return value;
     }
   }
 
@@ -95,9 +107,14 @@ class Parser {
       std::transform(arguments[0].begin(), arguments[0].end(), arguments[0].begin(), found->second);
       return arguments[0];
     }
-    if (name == "at" && arguments.size() == 2) return {arguments[0].at(static_cast<std::size_t>(arguments[1].at(0)))};
+    if (name == "at" && arguments.size() == 2)
+      return {arguments[0].at(static_cast<std::size_t>(arguments[1].at(0)))};
+    if (name == "above" && arguments.size() == 2)
+      return {static_cast<double>(std::count_if(arguments[0].begin(), arguments[0].end(),
+                                                [&](double v) { return v > arguments[1].at(0); }))};
     const auto found = reductions.find(name);
-    if (found == reductions.end()) fail(fmt::format("unknown function \"{}\" of {} arguments", name, arguments.size()));
+    if (found == reductions.end())
+      fail(fmt::format("unknown function \"{}\" of {} arguments", name, arguments.size()));
     Values all;
     for (const auto& argument : arguments) all.insert(all.end(), argument.begin(), argument.end());
     if (all.empty() && name != "size") fail(name + " of an empty list");
@@ -105,9 +122,11 @@ class Parser {
   }
 
   Values combine(const Values& a, const Values& b, Binary operation) const {
-    if (a.size() != b.size() && a.size() != 1 && b.size() != 1) fail(fmt::format("lists of {} and {} entries", a.size(), b.size()));
+    if (a.size() != b.size() && a.size() != 1 && b.size() != 1)
+      fail(fmt::format("lists of {} and {} entries", a.size(), b.size()));
     Values result(std::max(a.size(), b.size()));
-    for (std::size_t i = 0; i < result.size(); ++i) result[i] = operation(a[a.size() == 1 ? 0 : i], b[b.size() == 1 ? 0 : i]);
+    for (std::size_t i = 0; i < result.size(); ++i)
+      result[i] = operation(a[a.size() == 1 ? 0 : i], b[b.size() == 1 ? 0 : i]);
     return result;
   }
 
@@ -149,7 +168,8 @@ class Parser {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw std::runtime_error(fmt::format("expression {}\n  at \"{}\": {}", text_, text_.substr(std::min(at_, text_.size())), what));
+    throw std::runtime_error(fmt::format("expression {}\n  at \"{}\": {}", text_,
+                                         text_.substr(std::min(at_, text_.size())), what));
   }
 
   const std::string& text_;
@@ -159,11 +179,14 @@ class Parser {
 
 }  // namespace
 
-Values evaluate(const std::string& text, const Lookup& lookup) { return Parser(text, lookup).parse(); }
+Values evaluate(const std::string& text, const Lookup& lookup) {
+  return Parser(text, lookup).parse();
+}
 
 double evaluate_number(const std::string& text, const Lookup& lookup) {
   const Values values = evaluate(text, lookup);
-  if (values.size() != 1) throw std::runtime_error(fmt::format("expression {} has {} values, one is wanted", text, values.size()));
+  if (values.size() != 1)
+    throw std::runtime_error(fmt::format("expression {} has {} values, one is wanted", text, values.size()));
   return values[0];
 }
 

@@ -23,15 +23,22 @@ std::string reference_text(const Result& r) {
   return plain ? text : number(r.reference);
 }
 
-std::string with_unit(const Quantity& quantity) { return quantity.unit.empty() ? quantity.name : fmt::format("{} [{}]", quantity.name, quantity.unit); }
-
-std::string row(const Result& r, const std::string& mark) {
-  const std::string sign = r.quantity.check == Check::at_most ? "≤ " : r.quantity.check == Check::at_least ? "≥ " : "";
-  return fmt::format("| {}{} | {} | {}{} | {} | {} | {} | {} |\n", with_unit(r.quantity), mark, number(r.ours), sign, reference_text(r), difference_text(r),
-                     tolerance_text(r.quantity), to_string(r.quantity.origin), verdict(r));
+std::string with_unit(const Quantity& quantity) {
+  return quantity.unit.empty() ? quantity.name : fmt::format("{} [{}]", quantity.name, quantity.unit);
 }
 
-constexpr const char* header = "| quantity | ours | reference | difference | tolerance | origin of the reference | |\n|---|---|---|---|---|---|---|\n";
+std::string row(const Result& r, const std::string& mark) {
+  const std::string sign = r.quantity.check == Check::at_most    ? "≤ "
+                           : r.quantity.check == Check::at_least ? "≥ "
+                                                                 : "";
+  return fmt::format("| {}{} | {} | {}{} | {} | {} | {} | {} |\n", with_unit(r.quantity), mark,
+                     number(r.ours), sign, reference_text(r), difference_text(r), tolerance_text(r.quantity),
+                     to_string(r.quantity.origin), verdict(r));
+}
+
+constexpr const char* header =
+    "| quantity | ours | reference | difference | tolerance | origin of the reference | "
+    "|\n|---|---|---|---|---|---|---|\n";
 
 std::string read_file(const std::string& path) {
   std::ifstream file(path);
@@ -65,7 +72,9 @@ std::string difference_text(const Result& r) {
 }
 
 std::string tolerance_text(const Quantity& q) {
-  if (q.relative) return *q.relative >= 1e-4 ? fmt::format("{:.3g} %", 100 * *q.relative) : fmt::format("{:.0e} relative", *q.relative);
+  if (q.relative)
+    return *q.relative >= 1e-4 ? fmt::format("{:.3g} %", 100 * *q.relative)
+                               : fmt::format("{:.0e} relative", *q.relative);
   if (q.absolute) return fmt::format("{:.2g}{}{}", *q.absolute, q.unit.empty() ? "" : " ", q.unit);
   return "";
 }
@@ -96,7 +105,8 @@ std::string case_page(const CaseResults& results) {
   page += "\n## Sources of the references\n\n";
   std::vector<std::string> seen;
   for (const auto& r : results.results)
-    if (const auto& s = r.quantity.source; !s.empty() && std::find(seen.begin(), seen.end(), s) == seen.end()) {
+    if (const auto& s = r.quantity.source;
+        !s.empty() && std::find(seen.begin(), seen.end(), s) == seen.end()) {
       seen.push_back(s);
       page += "- " + s + "\n";
     }
@@ -108,10 +118,14 @@ std::string case_page(const CaseResults& results) {
 
 std::string overview_page(const std::vector<CaseResults>& cases) {
   std::string page =
-      "<!-- Made by tautline_verify; do not edit. -->\n\n# Verification\n\nWhat the program computes beside what is known. Each reference "
-      "says where it comes from: `analytic` (a formula), `published`, `other_code` (an independent program), `regression` (a recorded value of our own, "
-      "no evidence), `requirement` (what this project asks of itself). \"shown\" is reported, not asserted; the case's page says why.\n\n"
-      "Run it with `ctest --preset release -L verification`; `cmake --build --preset release --target verification_docs` "
+      "<!-- Made by tautline_verify; do not edit. -->\n\n# Verification\n\nWhat the program computes beside "
+      "what is known. Each reference "
+      "says where it comes from: `analytic` (a formula), `published`, `other_code` (an independent program), "
+      "`regression` (a recorded value of our own, "
+      "no evidence), `requirement` (what this project asks of itself). \"shown\" is reported, not asserted; "
+      "the case's page says why.\n\n"
+      "Run it with `ctest --preset release -L verification`; `cmake --build --preset release --target "
+      "verification_docs` "
       "makes these pages again.\n";
   for (const auto& c : cases) {
     page += fmt::format("\n## [{}](verification/{}.md)\n\n", title(c.the_case), c.the_case.name);

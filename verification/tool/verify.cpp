@@ -21,9 +21,12 @@ using namespace verify;
 namespace fs = std::filesystem;
 
 constexpr const char* usage =
-    "usage: tautline_verify [CASE...] --program TAUTLINE --source REPOSITORY --work DIRECTORY [--mpiexec COMMAND] [--reuse] [--write-docs]\n"
-    "  Runs the cases (none: all) in verification/ and compares; writes their pages into the work directory.\n"
-    "  --reuse: takes results that are there already; --write-docs: writes docs/ too, if every case was run and passed\n";
+    "usage: tautline_verify [CASE...] --program TAUTLINE --source REPOSITORY --work DIRECTORY [--mpiexec "
+    "COMMAND] [--reuse] [--write-docs]\n"
+    "  Runs the cases (none: all) in verification/ and compares; writes their pages into the work "
+    "directory.\n"
+    "  --reuse: takes results that are there already; --write-docs: writes docs/ too, if every case was run "
+    "and passed\n";
 
 struct Settings {
   std::vector<std::string> cases;
@@ -33,15 +36,21 @@ struct Settings {
 
 Settings read_arguments(int argc, char** argv) {
   Settings settings;
-  std::map<std::string, std::string*> values{
-      {"--program", &settings.program}, {"--source", &settings.source}, {"--work", &settings.work}, {"--mpiexec", &settings.mpiexec}};
+  std::map<std::string, std::string*> values{{"--program", &settings.program},
+                                             {"--source", &settings.source},
+                                             {"--work", &settings.work},
+                                             {"--mpiexec", &settings.mpiexec}};
   std::map<std::string, bool*> flags{{"--reuse", &settings.reuse}, {"--write-docs", &settings.write_docs}};
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    if (const auto value = values.find(word); value != values.end() && i + 1 < argc) *value->second = argv[++i];
-    else if (const auto flag = flags.find(word); flag != flags.end()) *flag->second = true;
-    else if (word.rfind("--", 0) == 0) throw std::runtime_error("unknown option " + word);
-    else settings.cases.push_back(word);
+    if (const auto value = values.find(word); value != values.end() && i + 1 < argc)
+      *value->second = argv[++i];
+    else if (const auto flag = flags.find(word); flag != flags.end())
+      *flag->second = true;
+    else if (word.rfind("--", 0) == 0)
+      throw std::runtime_error("unknown option " + word);
+    else
+      settings.cases.push_back(word);
   }
   if (settings.program.empty() || settings.source.empty() || settings.work.empty())
     throw std::runtime_error("--program, --source and --work are needed");
@@ -56,16 +65,22 @@ std::vector<std::string> all_cases(const std::string& source) {
   return names;
 }
 
-std::string quoted(const std::string& text) { return "'" + text + "'"; }
+std::string quoted(const std::string& text) {
+  return "'" + text + "'";
+}
 
 /// Runs the program as a user would. @throws std::runtime_error with the end of what it said
 void perform(const Run& run, const Case& c, const Settings& settings, const std::string& directory) {
   if (settings.reuse && fs::exists(directory + "/results.json")) return;
   fs::remove_all(directory);
   fs::create_directories(directory);
-  const std::string beside = c.directory + "/" + run.deck, deck = fs::exists(beside) ? beside : settings.source + "/" + run.deck;
-  std::string command = run.ranks > 1 ? fmt::format("{} -n {} --oversubscribe --bind-to none ", settings.mpiexec, run.ranks) : "";
-  command += fmt::format("{} run {} -o {} --quiet --no-pictures", quoted(settings.program), quoted(deck), quoted(directory));
+  const std::string beside = c.directory + "/" + run.deck,
+                    deck = fs::exists(beside) ? beside : settings.source + "/" + run.deck;
+  std::string command =
+      run.ranks > 1 ? fmt::format("{} -n {} --oversubscribe --bind-to none ", settings.mpiexec, run.ranks)
+                    : "";
+  command += fmt::format("{} run {} -o {} --quiet --no-pictures", quoted(settings.program), quoted(deck),
+                         quoted(directory));
   for (const auto& o : run.overrides) command += " --set " + quoted(o);
   const std::string log = directory + ".log";
   fmt::print("{}: {}\n", run.name, command);
@@ -78,12 +93,17 @@ bool passes(const Result& r) {
   const auto& q = r.quantity;
   if (!std::isfinite(r.ours) || !std::isfinite(r.reference)) return false;
   switch (q.check) {
-    case Check::at_most: return r.ours <= r.reference;
-    case Check::at_least: return r.ours >= r.reference;
-    case Check::report_only: return true;
-    case Check::equal: break;
+    case Check::at_most:
+      return r.ours <= r.reference;
+    case Check::at_least:
+      return r.ours >= r.reference;
+    case Check::report_only:
+      return true;
+    case Check::equal:
+      break;
   }
-  return std::abs(r.ours - r.reference) <= q.relative.value_or(0) * std::abs(r.reference) + q.absolute.value_or(0);
+  return std::abs(r.ours - r.reference) <=
+         q.relative.value_or(0) * std::abs(r.reference) + q.absolute.value_or(0);
 }
 
 /// Deviations of more than 5 % from what was published or computed elsewhere have to be explained.
@@ -91,7 +111,9 @@ std::string missing_explanation(const Result& r) {
   const auto& q = r.quantity;
   const bool elsewhere = q.origin == Origin::published || q.origin == Origin::other_code;
   const bool compared = q.check == Check::equal || q.check == Check::report_only;
-  if (!elsewhere || !compared || !q.note.empty() || std::abs(r.ours - r.reference) <= 0.05 * std::abs(r.reference)) return {};
+  if (!elsewhere || !compared || !q.note.empty() ||
+      std::abs(r.ours - r.reference) <= 0.05 * std::abs(r.reference))
+    return {};
   return q.absolute ? "" : "deviates by more than 5 % without a note that explains it";
 }
 
@@ -120,7 +142,8 @@ CaseResults run_case(const std::string& name, const Settings& settings) {
   const Lookup lookup = [&](const std::string& reference) {
     const auto colon = reference.find(':');
     const auto found = data.find(reference.substr(0, colon));
-    if (colon == std::string::npos || found == data.end()) throw std::runtime_error(fmt::format("{{{}}} names no run", reference));
+    if (colon == std::string::npos || found == data.end())
+      throw std::runtime_error(fmt::format("{{{}}} names no run", reference));
     return found->second.find(reference.substr(colon + 1));
   };
   for (const auto& quantity : c.quantities) result.results.push_back(examine(quantity, lookup));
@@ -131,7 +154,8 @@ bool print(const CaseResults& results) {
   bool passed = true;
   for (const auto& r : results.results) {
     passed = passed && r.passed;
-    fmt::print("  {:<58} {:>14.7g} {:>14.7g}  {:>10}  {:<14} {}\n", r.quantity.name + (r.quantity.unit.empty() ? "" : " [" + r.quantity.unit + "]"), r.ours,
+    fmt::print("  {:<58} {:>14.7g} {:>14.7g}  {:>10}  {:<14} {}\n",
+               r.quantity.name + (r.quantity.unit.empty() ? "" : " [" + r.quantity.unit + "]"), r.ours,
                r.reference, difference_text(r), tolerance_text(r.quantity), verdict(r));
   }
   return passed;
@@ -145,7 +169,8 @@ void write(const std::string& path, const std::string& text) {
 }
 
 void write_pages(const std::string& directory, const std::vector<CaseResults>& cases) {
-  for (const auto& c : cases) write(fmt::format("{}/verification/{}.md", directory, c.the_case.name), case_page(c));
+  for (const auto& c : cases)
+    write(fmt::format("{}/verification/{}.md", directory, c.the_case.name), case_page(c));
   if (cases.size() > 1) write(directory + "/verification.md", overview_page(cases));
 }
 
