@@ -24,15 +24,18 @@ double relative_residual(const ResidualNorms& norms) {
   return std::max(ratio(norms.force, norms.reference_force), ratio(norms.moment, norms.reference_moment));
 }
 
-/// A step is taken whole unless the energy still falls, or has begun to rise, too steeply at its end; then a secant
-/// search looks for the point where the slope along it has mostly gone (Crisfield 1991, sec. 9.2).
+/// A step is taken whole unless the energy still falls, or has begun to rise, too steeply at its end; then a
+/// secant search looks for the point where the slope along it has mostly gone (Crisfield 1991, sec. 9.2).
 double search_step(const std::function<double(double)>& slope, double slope_0) {
-  constexpr double slack = 0.8, growth = 1e8;  // a slender beam's full step may well overshoot by 1e6 and still be the best
+  constexpr double slack = 0.8,
+                   growth =
+                       1e8;  // a slender beam's full step may well overshoot by 1e6 and still be the best
   constexpr int most = 6;
   double left = 0, slope_left = slope_0, right = 1, slope_right = slope(1);
   if (!std::isfinite(slope_right))
     slope_right = -slope_0 * growth * growth;
-  else if (std::abs(slope_right) <= growth * std::abs(slope_0) || slope_right * slope_0 > 0) return 1;
+  else if (std::abs(slope_right) <= growth * std::abs(slope_0) || slope_right * slope_0 > 0)
+    return 1;
   double t = 1;
   for (int i = 0; i < most; ++i) {
     t = left + (right - left) * std::clamp(slope_left / (slope_left - slope_right), 0.1, 0.9);
@@ -52,7 +55,8 @@ double search_step(const std::function<double(double)>& slope, double slope_0) {
 std::string why_singular(const la::DirectSolver& solver) {
   if (!solver.failure().empty()) return solver.failure();
   const int null = solver.inertia().null;
-  return fmt::format("{} null pivot{}, so that part of the load meets no resistance", null, null == 1 ? "" : "s");
+  return fmt::format("{} null pivot{}, so that part of the load meets no resistance", null,
+                     null == 1 ? "" : "s");
 }
 
 /// The stopping rule and the record of one solve.
@@ -69,13 +73,15 @@ class Judge {
     if (callback_) callback_(iteration, residual);
     if (settled(record, residual, iteration)) return la::Verdict::converged;
     if (record.increment > 10) {
-      summary.reason = fmt::format("the increment is {:.2g} times the structure's size: the iteration runs away", record.increment);
+      summary.reason = fmt::format(
+          "the increment is {:.2g} times the structure's size: the iteration runs away", record.increment);
       return la::Verdict::diverged;
     }
     if (iteration >= options_.max_iterations) {
       summary.status = NewtonStatus::too_many_iterations;
-      summary.reason = fmt::format("after {} iterations the out-of-balance is {:.2e} of the reference force, not below {:.0e}",
-                                   iteration, residual, options_.force_tolerance);
+      summary.reason = fmt::format(
+          "after {} iterations the out-of-balance is {:.2e} of the reference force, not below {:.0e}",
+          iteration, residual, options_.force_tolerance);
       return la::Verdict::diverged;
     }
     return la::Verdict::go_on;
@@ -85,17 +91,19 @@ class Judge {
   double step = 1;
 
  private:
-  /// Forces in balance and, after the start, an increment that has died out; or increments at round-off with forces at the
-  /// level that round-off of the stiffest element leaves.
+  /// Forces in balance and, after the start, an increment that has died out; or increments at round-off with
+  /// forces at the level that round-off of the stiffest element leaves.
   bool settled(const NewtonIteration& record, double residual, int iteration) {
     const bool balanced = residual <= options_.force_tolerance;
     const bool still = iteration > 0 && record.increment <= options_.increment_tolerance;
-    const bool at_rounding = iteration > 0 && record.increment <= 1e-14 && residual <= 1e3 * options_.force_tolerance;
+    const bool at_rounding =
+        iteration > 0 && record.increment <= 1e-14 && residual <= 1e3 * options_.force_tolerance;
     const bool at_rest = iteration == 0 && residual <= 1e-3 * options_.force_tolerance;
     if (!(balanced && still) && !at_rounding && !at_rest) return false;
     summary.status = NewtonStatus::converged;
-    summary.reason = fmt::format("out-of-balance {:.2e} of the reference force {:.3g} N <= {:.0e}, increment {:.2e} of the size",
-                                 residual, record.norms.reference_force, options_.force_tolerance, record.increment);
+    summary.reason = fmt::format(
+        "out-of-balance {:.2e} of the reference force {:.3g} N <= {:.0e}, increment {:.2e} of the size",
+        residual, record.norms.reference_force, options_.force_tolerance, record.increment);
     return true;
   }
 
@@ -113,20 +121,24 @@ NewtonSummary solve_newton(NonlinearProblem& problem, Workspace& workspace, cons
   callbacks.residual = [&](const la::Vector& x, la::Vector& f) { problem.residual(x, f); };
   callbacks.tangent = [&](la::SymmetricMatrix& k) { problem.tangent(k); };
   callbacks.accept = [&](const la::Vector& x) { problem.accept(x); };
-  callbacks.verdict = [&](int iteration, const la::Vector& f, const la::Vector& dx) { return judge(iteration, f, dx); };
+  callbacks.verdict = [&](int iteration, const la::Vector& f, const la::Vector& dx) {
+    return judge(iteration, f, dx);
+  };
   callbacks.line_search = [&](const std::function<double(double)>& slope, double slope_0) {
     return judge.step = search_step(slope, slope_0);
   };
   problem.restart();
   la::Vector x(problem.layout());
-  const auto outcome = la::run_snes(callbacks, workspace.tangent, workspace.solver, x, options.max_iterations + 1);
+  const auto outcome =
+      la::run_snes(callbacks, workspace.tangent, workspace.solver, x, options.max_iterations + 1);
   NewtonSummary summary = std::move(judge.summary);
   if (outcome == la::SnesOutcome::converged) return summary;
   if (outcome == la::SnesOutcome::singular) {
     summary.status = NewtonStatus::singular;
     summary.reason = "the tangent stiffness is singular: " + why_singular(workspace.solver);
   } else if (outcome == la::SnesOutcome::not_a_number) {
-    summary.reason = "the residual is no longer a number: an element was turned inside out or a step was far too large";
+    summary.reason =
+        "the residual is no longer a number: an element was turned inside out or a step was far too large";
   }
   return summary;
 }

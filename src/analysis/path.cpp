@@ -48,8 +48,9 @@ PathSummary follow_path(PathProblem& problem, Workspace& workspace, const Newton
       if (step < options.min_step) {
         problem.set_lambda(reached);
         summary.reason = fmt::format(
-            "stopped at lambda = {:.4g}: the step {:.2e} fell below min_step = {:.2e}; the last attempt failed because {}", reached,
-            step, options.min_step, newton.reason);
+            "stopped at lambda = {:.4g}: the step {:.2e} fell below min_step = {:.2e}; the last attempt "
+            "failed because {}",
+            reached, step, options.min_step, newton.reason);
         return summary;
       }
     }
@@ -60,7 +61,8 @@ PathSummary follow_path(PathProblem& problem, Workspace& workspace, const Newton
   }
   summary.reached = true;
   summary.inertia = inertia_at_end(problem, workspace, summary.points.back().newton);
-  summary.reason = fmt::format("lambda = 1 reached in {} step{}", summary.points.size(), summary.points.size() == 1 ? "" : "s");
+  summary.reason = fmt::format("lambda = 1 reached in {} step{}", summary.points.size(),
+                               summary.points.size() == 1 ? "" : "s");
   return summary;
 }
 

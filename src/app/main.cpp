@@ -75,23 +75,28 @@ int guarded(const std::function<int()>& action) {
   } catch (const LibraryError& error) {
     return report_failure(fmt::format("error: {}", error.what()), ExitCode::library_failed);
   } catch (const std::exception& error) {
-    return report_failure(fmt::format("internal error: {}\nThis is a bug, please report it with the deck.", error.what()), ExitCode::bug);
+    return report_failure(
+        fmt::format("internal error: {}\nThis is a bug, please report it with the deck.", error.what()),
+        ExitCode::bug);
   }
 }
 
-/// Runs with the libraries started and Ctrl-C watched. A failure that only one rank may have met ends all of them.
+/// Runs with the libraries started and Ctrl-C watched. A failure that only one rank may have met ends all of
+/// them.
 int in_session(const std::function<int()>& action) {
   const la::Session session;
   watch_for_interrupt();
   const int code = guarded(action);
-  if (code >= static_cast<int>(ExitCode::library_failed) && code != static_cast<int>(ExitCode::interrupted) && la::size() > 1)
+  if (code >= static_cast<int>(ExitCode::library_failed) && code != static_cast<int>(ExitCode::interrupted) &&
+      la::size() > 1)
     la::abort_all_ranks(code);
   return code;
 }
 
 void add_deck_options(CLI::App& command, Request& request) {
   command.add_option("deck", request.deck, "the deck, a YAML file")->required();
-  command.add_option("--set", request.overrides, "change a value of the deck: path.to.key=value")->allow_extra_args(false);
+  command.add_option("--set", request.overrides, "change a value of the deck: path.to.key=value")
+      ->allow_extra_args(false);
 }
 
 void add_run_options(CLI::App& command, Request& request) {
@@ -118,43 +123,66 @@ int main(int argc, char** argv) {
 
   auto* run_command = app.add_subcommand("run", "run a deck");
   add_run_options(*run_command, request);
-  run_command->footer("Example: tautline run inputs/perimeter_truss_12m.yaml --set parameters.subdivisions=8");
+  run_command->footer(
+      "Example: tautline run inputs/perimeter_truss_12m.yaml --set parameters.subdivisions=8");
   on_ranks(run_command, run);
 
-  auto* check_command = app.add_subcommand("check", "tell every error of a deck, and what would make its solve fail; solves nothing");
+  auto* check_command = app.add_subcommand(
+      "check", "tell every error of a deck, and what would make its solve fail; solves nothing");
   add_deck_options(*check_command, request);
   check_command->footer("Example: tautline check inputs/perimeter_truss_12m.yaml");
   on_ranks(check_command, check);
 
   auto* study_command = app.add_subcommand("study", "run a deck with several subdivisions and compare");
   add_run_options(*study_command, request);
-  study_command->add_option("--subdivisions", request.subdivisions, "parts of each facet side")->delimiter(',');
+  study_command->add_option("--subdivisions", request.subdivisions, "parts of each facet side")
+      ->delimiter(',');
   study_command->footer("Example: tautline study inputs/perimeter_truss_12m.yaml --subdivisions 2,4,6,8");
   on_ranks(study_command, study);
 
   auto* new_command = app.add_subcommand("new", "print a commented starting deck");
   new_command->add_option("kind", request.kind, "perimeter-truss, net, membrane or frame")->required();
   new_command->footer("Example: tautline new net > net.yaml");
-  on(new_command, [](const Request& r) { std::cout << deck::starting_deck(r.kind); return 0; });
+  on(new_command, [](const Request& r) {
+    std::cout << deck::starting_deck(r.kind);
+    return 0;
+  });
 
   auto* explain_command = app.add_subcommand("explain", "tell what a deck key means");
   explain_command->add_option("key", request.key, "the key, e.g. reflector.gap; none: all keys");
   explain_command->footer("Example: tautline explain reflector.gap");
-  on(explain_command, [](const Request& r) { std::cout << deck::explain(r.key); return 0; });
+  on(explain_command, [](const Request& r) {
+    std::cout << deck::explain(r.key);
+    return 0;
+  });
 
-  auto* schema_command = app.add_subcommand("schema", "print the JSON schema of the deck, for an editor's completion");
+  auto* schema_command =
+      app.add_subcommand("schema", "print the JSON schema of the deck, for an editor's completion");
   schema_command->footer("Example: tautline schema > tautline.schema.json");
-  on(schema_command, [](const Request&) { std::cout << deck::schema(); return 0; });
+  on(schema_command, [](const Request&) {
+    std::cout << deck::schema();
+    return 0;
+  });
 
-  auto* report_command = app.add_subcommand("report", "(re)build report.html; several directories: side by side");
+  auto* report_command =
+      app.add_subcommand("report", "(re)build report.html; several directories: side by side");
   report_command->add_option("directories", request.directories, "result directories")->required();
   report_command->footer("Example: tautline report results/perimeter_truss_12m");
-  on(report_command, [](const Request& r) { std::cout << output::write_report(r.directories) << '\n'; return 0; });
+  on(report_command, [](const Request& r) {
+    std::cout << output::write_report(r.directories) << '\n';
+    return 0;
+  });
 
-  auto* compare_command = app.add_subcommand("compare", "compare surface error, tensions, frequencies and time of runs");
-  compare_command->add_option("directories", request.directories, "result directories")->required()->expected(2, 1000);
+  auto* compare_command =
+      app.add_subcommand("compare", "compare surface error, tensions, frequencies and time of runs");
+  compare_command->add_option("directories", request.directories, "result directories")
+      ->required()
+      ->expected(2, 1000);
   compare_command->footer("Example: tautline compare results/a results/b");
-  on(compare_command, [](const Request& r) { std::cout << output::comparison_text(r.directories); return 0; });
+  on(compare_command, [](const Request& r) {
+    std::cout << output::comparison_text(r.directories);
+    return 0;
+  });
 
   try {
     app.parse(argc, argv);

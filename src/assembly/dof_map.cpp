@@ -75,8 +75,8 @@ std::array<int, 2> blocks_of(const DofMap& map, const model::Cable& cable) {
 }
 
 std::array<int, 4> blocks_of(const DofMap& map, const model::Beam& beam) {
-  return {map.displacement_block[beam.nodes[0]], map.rotation_block[beam.nodes[0]], map.displacement_block[beam.nodes[1]],
-          map.rotation_block[beam.nodes[1]]};
+  return {map.displacement_block[beam.nodes[0]], map.rotation_block[beam.nodes[0]],
+          map.displacement_block[beam.nodes[1]], map.rotation_block[beam.nodes[1]]};
 }
 
 std::array<int, 3> blocks_of(const DofMap& map, const model::Membrane& membrane) {

@@ -20,8 +20,8 @@ MatX right_hand_sides(const System& system, const std::vector<int>& cables, int 
   for (int k = begin; k < end; ++k) {
     const auto& cable = system.model().cables[cables[k]];
     const auto data = model::cable_data(system.model(), cable);
-    const Vec<6> derivative =
-        element::cable_force_by_unstressed_length(data.properties, data.x_ref, gather(system.state(), cable.nodes));
+    const Vec<6> derivative = element::cable_force_by_unstressed_length(data.properties, data.x_ref,
+                                                                        gather(system.state(), cable.nodes));
     const auto blocks = blocks_of(system.dof_map(), cable);
     for (int i = 0; i < 6; ++i) {
       const int unknown = 3 * blocks[i / 3] + i % 3, row = unknown - 3 * layout.first;

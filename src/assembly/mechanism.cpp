@@ -12,17 +12,19 @@ namespace tautline::assembly {
 
 namespace {
 
-constexpr int rounds = 8;              // of inverse iteration
-constexpr double soft = 1e-11;         // stiffness below this part of the largest counts as none
+constexpr int rounds = 8;       // of inverse iteration
+constexpr double soft = 1e-11;  // stiffness below this part of the largest counts as none
 
 /// The softest motion of `tangent`, by inverse iteration on K + sigma I, and its stiffness.
-std::pair<la::Vector, double> softest_motion(const la::SymmetricMatrix& tangent, const la::BlockLayout& layout) {
+std::pair<la::Vector, double> softest_motion(const la::SymmetricMatrix& tangent,
+                                             const la::BlockLayout& layout) {
   const double sigma = 0.01 * soft * tangent.norm_of_diagonal();
   const auto shifted = tangent.shifted(sigma);
   la::DirectSolver solver;
   la::Vector x(layout), y(layout);
   std::vector<double> start(static_cast<std::size_t>(3 * layout.local));
-  for (std::size_t i = 0; i < start.size(); ++i) start[i] = 1 + 0.5 * std::sin(1.7 * static_cast<double>(i + 3 * layout.first));
+  for (std::size_t i = 0; i < start.size(); ++i)
+    start[i] = 1 + 0.5 * std::sin(1.7 * static_cast<double>(i + 3 * layout.first));
   x.write(start);
   if (!solver.factor(shifted)) return {std::move(x), 0};
   for (int i = 0; i < rounds; ++i) {
@@ -64,11 +66,14 @@ Neighbourhood around(const model::Model& model, int node) {
 
 std::string likely_cause(const model::Model& model, int node) {
   const Neighbourhood n = around(model, node);
-  if (n.beams) return "the supports leave the frame free to move: hold it in more directions, or at more nodes";
+  if (n.beams)
+    return "the supports leave the frame free to move: hold it in more directions, or at more nodes";
   if (n.membranes && !n.prestressed && !n.taut)
-    return "a membrane without prestress does not resist motion out of its plane: give its group a `prestress`";
+    return "a membrane without prestress does not resist motion out of its plane: give its group a "
+           "`prestress`";
   if (!n.membranes && !n.taut)
-    return "cables without tension resist nothing across their line: give their group a `tension`, or support the node";
+    return "cables without tension resist nothing across their line: give their group a `tension`, or "
+           "support the node";
   return "neither the supports nor the prestress resist this motion: support the node or add a cable";
 }
 
@@ -80,7 +85,9 @@ std::optional<Mechanism> find_mechanism(System& system, analysis::Workspace& wor
   if (stiffness > soft * workspace.tangent.norm_of_diagonal()) return std::nullopt;
   const auto& model = system.model();
   const auto field = system.nodal(motion);
-  const auto amplitude = [&](int node) { return std::max(field.displacement[node].norm(), field.rotation[node].norm()); };
+  const auto amplitude = [&](int node) {
+    return std::max(field.displacement[node].norm(), field.rotation[node].norm());
+  };
   std::vector<int> order(model.nodes.size());
   std::iota(order.begin(), order.end(), 0);
   const auto most = std::min<std::size_t>(5, order.size());
@@ -97,8 +104,9 @@ std::optional<Mechanism> find_mechanism(System& system, analysis::Workspace& wor
     const Vec3& at = model.nodes[node];
     names.push_back(fmt::format("{} at ({:.4g}, {:.4g}, {:.4g})", node + 1, at.x(), at.y(), at.z()));
   }
-  mechanism.text = fmt::format("the structure can move without resistance: node{} {} {} {}; {}", names.size() == 1 ? "" : "s",
-                               join(names, ", "), mechanism.rotation ? "turning about" : "moving along",
+  mechanism.text = fmt::format("the structure can move without resistance: node{} {} {} {}; {}",
+                               names.size() == 1 ? "" : "s", join(names, ", "),
+                               mechanism.rotation ? "turning about" : "moving along",
                                direction_name(mechanism.direction), likely_cause(model, first));
   return mechanism;
 }

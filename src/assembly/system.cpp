@@ -17,7 +17,8 @@ using element::Want;
 namespace {
 
 template <class Blocks, class Force>
-void scatter(const Blocks& blocks, const Force& values, std::vector<double>& force, std::vector<double>& magnitude) {
+void scatter(const Blocks& blocks, const Force& values, std::vector<double>& force,
+             std::vector<double>& magnitude) {
   for (std::size_t b = 0; b < blocks.size(); ++b)
     for (int c = 0; c < 3; ++c) {
       const double value = values[3 * static_cast<int>(b) + c];
@@ -50,7 +51,10 @@ double bounding_size(const model::Model& model) {
 }  // namespace
 
 System::System(model::Model model)
-    : model_(std::move(model)), map_(make_dof_map(model_)), state_(model::State::reference(model_)), committed_(state_),
+    : model_(std::move(model)),
+      map_(make_dof_map(model_)),
+      state_(model::State::reference(model_)),
+      committed_(state_),
       size_(bounding_size(model_)) {
   const auto own = [&](int node) { return map_.node_rank[node] == la::rank(); };
   const auto mine = [&](const auto& elements, std::vector<int>& indices) {
@@ -116,13 +120,16 @@ OutOfBalance System::begin_stage(const Boundary& boundary) {
     };
     const double force = largest(map_.displacement_block[node]);
     if (force > result.force) result = {force, result.moment, static_cast<int>(node)};
-    if (map_.rotation_block[node] >= 0) result.moment = std::max(result.moment, largest(map_.rotation_block[node]));
+    if (map_.rotation_block[node] >= 0)
+      result.moment = std::max(result.moment, largest(map_.rotation_block[node]));
   }
   set_lambda(0);
   return result;
 }
 
-void System::set_target_strains(std::vector<double> strains) { wanted_strain_ = std::move(strains); }
+void System::set_target_strains(std::vector<double> strains) {
+  wanted_strain_ = std::move(strains);
+}
 
 void System::set_lambda(double lambda) {
   lambda_ = lambda;
@@ -134,30 +141,38 @@ void System::apply_strains() {
     model_.cables[i].initial_strain = (1 - lambda_) * start_strain_[i] + lambda_ * end_strain_[i];
 }
 
-void System::add_internal(const model::State& state, std::vector<double>& force, std::vector<double>& magnitude) const {
+void System::add_internal(const model::State& state, std::vector<double>& force,
+                          std::vector<double>& magnitude) const {
   for (const int i : share_.cables) {
     const auto& cable = model_.cables[i];
     const auto data = model::cable_data(model_, cable);
-    scatter(blocks_of(map_, cable),
-            element::evaluate_cable(data.properties, data.x_ref, gather(state, cable.nodes), Want::force).force, force, magnitude);
+    scatter(
+        blocks_of(map_, cable),
+        element::evaluate_cable(data.properties, data.x_ref, gather(state, cable.nodes), Want::force).force,
+        force, magnitude);
   }
   for (const int i : share_.beams) {
     const auto& beam = model_.beams[i];
     scatter(blocks_of(map_, beam),
-            element::evaluate_beam(model_.groups[beam.group].beam, model::beam_geometry(model_, beam), beam_motion(state, beam),
-                                   Want::force).force, force, magnitude);
+            element::evaluate_beam(model_.groups[beam.group].beam, model::beam_geometry(model_, beam),
+                                   beam_motion(state, beam), Want::force)
+                .force,
+            force, magnitude);
   }
   for (const int i : share_.membranes) {
     const auto& membrane = model_.membranes[i];
     scatter(blocks_of(map_, membrane),
             element::evaluate_membrane(model_.groups[membrane.group].membrane, membrane.prestress,
-                                       membrane_nodes(model_, membrane), gather(state, membrane.nodes), Want::force).force,
+                                       membrane_nodes(model_, membrane), gather(state, membrane.nodes),
+                                       Want::force)
+                .force,
             force, magnitude);
   }
 }
 
 std::span<const double> System::own_part(const std::vector<double>& all) const {
-  return std::span(all).subspan(static_cast<std::size_t>(3 * map_.layout.first), static_cast<std::size_t>(3 * map_.layout.local));
+  return std::span(all).subspan(static_cast<std::size_t>(3 * map_.layout.first),
+                                static_cast<std::size_t>(3 * map_.layout.local));
 }
 
 std::vector<double> System::internal_forces() const {
@@ -225,9 +240,13 @@ void System::accept(const la::Vector& x) {
   origin_ = std::move(all);
 }
 
-void System::restart() { std::fill(origin_.begin(), origin_.end(), 0.0); }
+void System::restart() {
+  std::fill(origin_.begin(), origin_.end(), 0.0);
+}
 
-void System::commit() { committed_ = state_; }
+void System::commit() {
+  committed_ = state_;
+}
 
 void System::roll_back() {
   state_ = committed_;
@@ -240,7 +259,8 @@ void System::tangent(la::SymmetricMatrix& k) {
   for (const int i : share_.cables) {
     const auto& cable = model_.cables[i];
     const auto data = model::cable_data(model_, cable);
-    auto response = element::evaluate_cable(data.properties, data.x_ref, gather(state_, cable.nodes), Want::tangent);
+    auto response =
+        element::evaluate_cable(data.properties, data.x_ref, gather(state_, cable.nodes), Want::tangent);
     scatter(blocks_of(map_, cable), response.tangent, held_, k);
   }
   for (const int i : share_.beams) {
@@ -252,7 +272,8 @@ void System::tangent(la::SymmetricMatrix& k) {
   for (const int i : share_.membranes) {
     const auto& membrane = model_.membranes[i];
     auto response = element::evaluate_membrane(model_.groups[membrane.group].membrane, membrane.prestress,
-                                               membrane_nodes(model_, membrane), gather(state_, membrane.nodes), Want::tangent);
+                                               membrane_nodes(model_, membrane),
+                                               gather(state_, membrane.nodes), Want::tangent);
     scatter(blocks_of(map_, membrane), response.tangent, held_, k);
   }
   for (int block = map_.layout.first; block < map_.layout.first + map_.layout.local; ++block) {
@@ -268,21 +289,23 @@ la::SymmetricMatrix System::assemble_mass(const std::vector<bool>& without) cons
   la::SymmetricMatrix m = new_matrix();
   for (const int i : share_.cables) {
     const auto& cable = model_.cables[i];
-    auto values = element::cable_mass(model_.groups[cable.group].cable.mass_per_length, model::cable_data(model_, cable).x_ref);
+    auto values = element::cable_mass(model_.groups[cable.group].cable.mass_per_length,
+                                      model::cable_data(model_, cable).x_ref);
     scatter(blocks_of(map_, cable), values, without, m);
   }
   for (const int i : share_.beams) {
     const auto& beam = model_.beams[i];
     const auto geometry = model::beam_geometry(model_, beam);
-    const auto response =
-        element::evaluate_beam(model_.groups[beam.group].beam, geometry, beam_motion(state_, beam), Want::force);
-    auto values = element::beam_mass(model_.groups[beam.group].beam, (geometry.x_ref.col(1) - geometry.x_ref.col(0)).norm(),
-                                     response.frame);
+    const auto response = element::evaluate_beam(model_.groups[beam.group].beam, geometry,
+                                                 beam_motion(state_, beam), Want::force);
+    auto values = element::beam_mass(model_.groups[beam.group].beam,
+                                     (geometry.x_ref.col(1) - geometry.x_ref.col(0)).norm(), response.frame);
     scatter(blocks_of(map_, beam), values, without, m);
   }
   for (const int i : share_.membranes) {
     const auto& membrane = model_.membranes[i];
-    auto values = element::membrane_mass(model_.groups[membrane.group].membrane.mass_per_area, membrane_nodes(model_, membrane));
+    auto values = element::membrane_mass(model_.groups[membrane.group].membrane.mass_per_area,
+                                         membrane_nodes(model_, membrane));
     scatter(blocks_of(map_, membrane), values, without, m);
   }
   const Mat3 zero = Mat3::Zero();
@@ -295,7 +318,9 @@ la::SymmetricMatrix System::assemble_mass(const std::vector<bool>& without) cons
 double System::second_variation(const la::Vector& x) const {
   std::vector<double> all;
   x.gather(all);
-  const auto first_is_own = [&](const auto& element) { return map_.node_rank[element.nodes[0]] == la::rank(); };
+  const auto first_is_own = [&](const auto& element) {
+    return map_.node_rank[element.nodes[0]] == la::rank();
+  };
   const auto at = [&](int block) { return Eigen::Map<const Vec3>(&all[3 * block]); };
   double sum = 0;
   for (const int i : share_.cables) {
@@ -303,7 +328,8 @@ double System::second_variation(const la::Vector& x) const {
     if (!first_is_own(cable)) continue;
     const auto data = model::cable_data(model_, cable);
     const auto tangent =
-        element::evaluate_cable(data.properties, data.x_ref, gather(state_, cable.nodes), Want::tangent).tangent;
+        element::evaluate_cable(data.properties, data.x_ref, gather(state_, cable.nodes), Want::tangent)
+            .tangent;
     const auto blocks = blocks_of(map_, cable);
     const Vec3 relative = at(blocks[1]) - at(blocks[0]);
     sum += relative.dot(tangent.topLeftCorner<3, 3>() * relative);
@@ -323,8 +349,9 @@ double System::second_variation(const la::Vector& x) const {
     const auto blocks = blocks_of(map_, membrane);
     Vec<9> v;
     v << at(blocks[0]), at(blocks[1]), at(blocks[2]);
-    const auto tangent = element::evaluate_membrane(model_.groups[membrane.group].membrane, membrane.prestress,
-                                                    membrane_nodes(model_, membrane), gather(state_, membrane.nodes), Want::tangent)
+    const auto tangent = element::evaluate_membrane(model_.groups[membrane.group].membrane,
+                                                    membrane.prestress, membrane_nodes(model_, membrane),
+                                                    gather(state_, membrane.nodes), Want::tangent)
                              .tangent;
     sum += v.dot(tangent * v);
   }
@@ -348,9 +375,9 @@ analysis::ResidualNorms System::norms(const la::Vector& f) const {
     if (map_.rotation_block[node] >= 0) add(map_.rotation_block[node], sums[1], sums[3]);
   }
   for (double& sum : sums) sum = std::sqrt(la::sum_over_ranks(sum));
-  // Where nothing bends yet there is no moment to compare with: force times size stands in, far below any real moment.
-  // Where moments alone act there is no force to compare with: moment over size stands in, below any shear force that
-  // makes such moments.
+  // Where nothing bends yet there is no moment to compare with: force times size stands in, far below any
+  // real moment. Where moments alone act there is no force to compare with: moment over size stands in, below
+  // any shear force that makes such moments.
   return {sums[0], sums[1], std::max(sums[2], sums[3] / size_), std::max(sums[3], 1e-3 * sums[2] * size_)};
 }
 
@@ -385,7 +412,8 @@ System::NodalField System::nodal(const la::Vector& x) const {
   NodalField field{Points(model_.nodes.size(), Vec3::Zero()), Points(model_.nodes.size(), Vec3::Zero())};
   for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
     field.displacement[node] = Eigen::Map<const Vec3>(&all[3 * map_.displacement_block[node]]);
-    if (map_.rotation_block[node] >= 0) field.rotation[node] = Eigen::Map<const Vec3>(&all[3 * map_.rotation_block[node]]);
+    if (map_.rotation_block[node] >= 0)
+      field.rotation[node] = Eigen::Map<const Vec3>(&all[3 * map_.rotation_block[node]]);
   }
   return field;
 }

@@ -21,6 +21,8 @@ void watch_for_interrupt() {
   std::signal(SIGTERM, on_signal);
 }
 
-bool interrupt_requested() noexcept { return requested != 0; }
+bool interrupt_requested() noexcept {
+  return requested != 0;
+}
 
 }  // namespace tautline

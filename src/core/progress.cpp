@@ -6,7 +6,9 @@
 
 namespace tautline {
 
-Progress::Mode Progress::detect() { return isatty(STDERR_FILENO) != 0 ? Mode::live : Mode::lines; }
+Progress::Mode Progress::detect() {
+  return isatty(STDERR_FILENO) != 0 ? Mode::live : Mode::lines;
+}
 
 void Progress::say(const std::string& text) {
   if (mode_ == Mode::silent) return;

@@ -12,7 +12,8 @@ namespace {
 
 std::string normalised(std::string_view word) {
   std::string result;
-  for (const char c : word) result += (c == '-') ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const char c : word)
+    result += (c == '-') ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return result;
 }
 

@@ -189,7 +189,8 @@ Block make_tuning() {
        "regularisation", [](TuningStepOptions & o) -> auto& { return o.tuning.regularisation; })
       .at_least(0)
       .says(
-          "Method sensitivity: weight of tie-tension changes beside the surface error; less reaches a smaller "
+          "Method sensitivity: weight of tie-tension changes beside the surface error; less reaches a "
+          "smaller "
           "error by larger and less even tensions.");
   b.key(
        "max_change", [](TuningStepOptions & o) -> auto& { return o.tuning.max_change; })

@@ -121,7 +121,8 @@ struct Moment {
   Vec<12> force;      ///< local
 };
 
-Moment evaluate_moment(const BeamSection& section, const BeamGeometry& geometry, const BeamMotion& motion, Want want) {
+Moment evaluate_moment(const BeamSection& section, const BeamGeometry& geometry, const BeamMotion& motion,
+                       Want want) {
   Corotated c = corotate(geometry, motion);
   const std::array by_spin{SpinToRotationVector(c.rotations[0]), SpinToRotationVector(c.rotations[1])};
   Vec<7> deformation;
@@ -152,7 +153,8 @@ Mat<7> relative_tangent(const Moment& m) {
 /// What turning the frame under the forces present adds; not symmetric.
 Mat<12> frame_tangent(const Moment& m) {
   Mat<12> tangent = -lever_derivative(m.c, m.spin_force.segment<3>(1) + m.spin_force.segment<3>(4));
-  for (int at = 0; at < 12; at += 3) tangent.middleRows<3>(at) -= skew(m.force.segment<3>(at)) * m.c.frame_spin;
+  for (int at = 0; at < 12; at += 3)
+    tangent.middleRows<3>(at) -= skew(m.force.segment<3>(at)) * m.c.frame_spin;
   return tangent;
 }
 
@@ -199,8 +201,8 @@ BeamResponse evaluate_beam(const BeamSection& section, const BeamGeometry& geome
   return response;
 }
 
-double beam_second_variation(const BeamSection& section, const BeamGeometry& geometry, const BeamMotion& motion,
-                             const Vec<12>& velocity) {
+double beam_second_variation(const BeamSection& section, const BeamGeometry& geometry,
+                             const BeamMotion& motion, const Vec<12>& velocity) {
   const Moment m = evaluate_moment(section, geometry, motion, Want::tangent);
   Vec<12> local;
   for (int at = 0; at < 12; at += 3) local.segment<3>(at) = m.c.frame.transpose() * velocity.segment<3>(at);

@@ -39,10 +39,26 @@ void touch(::Mat matrix) {
 
 std::string explain_mumps(int code, int detail) {
   switch (code) {
-    case -5: case -7: case -13: case -19: return fmt::format("MUMPS ran out of memory (INFOG(1) = {}, {}): use a machine with more, or more ranks on a cluster", code, detail);
-    case -6: case -10: return fmt::format("the matrix is singular (MUMPS INFOG(1) = {}, pivots found {})", code, detail);
-    case -8: case -9: return fmt::format("MUMPS's workspace was too small even after several enlargements (INFOG(1) = {}, {})", code, detail);
-    default: return fmt::format("MUMPS failed with INFOG(1) = {}, INFOG(2) = {}; see its users' guide, section on error diagnostics", code, detail);
+    case -5:
+    case -7:
+    case -13:
+    case -19:
+      return fmt::format(
+          "MUMPS ran out of memory (INFOG(1) = {}, {}): use a machine with more, or more ranks on a cluster",
+          code, detail);
+    case -6:
+    case -10:
+      return fmt::format("the matrix is singular (MUMPS INFOG(1) = {}, pivots found {})", code, detail);
+    case -8:
+    case -9:
+      return fmt::format(
+          "MUMPS's workspace was too small even after several enlargements (INFOG(1) = {}, {})", code,
+          detail);
+    default:
+      return fmt::format(
+          "MUMPS failed with INFOG(1) = {}, INFOG(2) = {}; see its users' guide, section on error "
+          "diagnostics",
+          code, detail);
   }
 }
 
@@ -57,10 +73,12 @@ DirectSolver::DirectSolver() {
   check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS), "PCFactorSetMatSolverType");
 }
 
-DirectSolver::~DirectSolver() { KSPDestroy(&ksp_); }
+DirectSolver::~DirectSolver() {
+  KSPDestroy(&ksp_);
+}
 
-/// Inertia wants the whole matrix in the tree (ICNTL(13)) and null pivots seen (ICNTL(24), CNTL(3)); approximate minimum
-/// fill (ICNTL(7) = 2) suits surface-like meshes.
+/// Inertia wants the whole matrix in the tree (ICNTL(13)) and null pivots seen (ICNTL(24), CNTL(3));
+/// approximate minimum fill (ICNTL(7) = 2) suits surface-like meshes.
 void DirectSolver::set_options() {
   ::PC pc = nullptr;
   check(KSPGetPC(ksp_, &pc), "KSPGetPC");
@@ -126,7 +144,8 @@ MatX DirectSolver::solve_many(const MatX& b) {
   ::Mat right = nullptr, left = nullptr;
   const auto make = [&](double* data, ::Mat* result) {
     check(MatCreateDense(PETSC_COMM_WORLD, static_cast<PetscInt>(b.rows()), PETSC_DECIDE, PETSC_DETERMINE,
-                         static_cast<PetscInt>(b.cols()), data, result), "MatCreateDense");
+                         static_cast<PetscInt>(b.cols()), data, result),
+          "MatCreateDense");
     check(MatAssemblyBegin(*result, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin");
     check(MatAssemblyEnd(*result, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd");
   };

@@ -6,8 +6,8 @@
 
 namespace tautline::la {
 
-/// Sharpens each mode by inverse iteration with its residual in extended precision, lower modes kept out, and gives its Rayleigh
-/// quotient and residual. @throws LibraryError if K - shift M is singular
+/// Sharpens each mode by inverse iteration with its residual in extended precision, lower modes kept out, and
+/// gives its Rayleigh quotient and residual. @throws LibraryError if K - shift M is singular
 void refine(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, double shift, EigenPairs& pairs);
 
 }  // namespace tautline::la

@@ -25,7 +25,8 @@ void check(PetscErrorCode code, const char* what) {
 namespace {
 
 /// Keeps PETSc from printing its own traceback: errors reach the user through LibraryError.
-PetscErrorCode quiet(MPI_Comm, int, const char*, const char*, PetscErrorCode code, PetscErrorType, const char*, void*) {
+PetscErrorCode quiet(MPI_Comm, int, const char*, const char*, PetscErrorCode code, PetscErrorType,
+                     const char*, void*) {
   return code;
 }
 
@@ -38,7 +39,9 @@ Session::Session() {
   check(PetscPushErrorHandler(quiet, nullptr), "PetscPushErrorHandler");
 }
 
-Session::~Session() { SlepcFinalize(); }
+Session::~Session() {
+  SlepcFinalize();
+}
 
 int rank() {
   int value = 0, started = 0;
@@ -64,7 +67,9 @@ double max_over_ranks(double value) {
   return value;
 }
 
-bool true_on_any_rank(bool value) { return max_over_ranks(value ? 1.0 : 0.0) > 0; }
+bool true_on_any_rank(bool value) {
+  return max_over_ranks(value ? 1.0 : 0.0) > 0;
+}
 
 void on_root(const std::function<void()>& action) {
   std::string failure;
@@ -90,12 +95,14 @@ void abort_all_ranks(int exit_code) {
 }
 
 void sum_over_ranks(std::vector<double>& values) {
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
+                PETSC_COMM_WORLD);
 }
 
 LibraryVersions library_versions() {
   return {fmt::format("{}.{}.{}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR),
-          fmt::format("{}.{}.{}", SLEPC_VERSION_MAJOR, SLEPC_VERSION_MINOR, SLEPC_VERSION_SUBMINOR), MUMPS_VERSION};
+          fmt::format("{}.{}.{}", SLEPC_VERSION_MAJOR, SLEPC_VERSION_MINOR, SLEPC_VERSION_SUBMINOR),
+          MUMPS_VERSION};
 }
 
 std::size_t peak_memory_bytes() {

@@ -65,8 +65,8 @@ PetscErrorCode start_iteration(::SNES snes, PetscInt) {
   });
 }
 
-PetscErrorCode judge(::SNES snes, PetscInt iteration, PetscReal, PetscReal, PetscReal norm, SNESConvergedReason* reason,
-                     void* data) {
+PetscErrorCode judge(::SNES snes, PetscInt iteration, PetscReal, PetscReal, PetscReal norm,
+                     SNESConvergedReason* reason, void* data) {
   auto& context = *static_cast<Context*>(data);
   return context.guard([&] {
     *reason = SNES_CONVERGED_ITERATING;
@@ -132,7 +132,8 @@ PetscErrorCode before_solve(::KSP, ::Vec, ::Vec, void* data) {
 
 PetscErrorCode after_solve(::KSP, ::Vec, ::Vec, void* data) {
   auto& context = *static_cast<Context*>(data);
-  context.solver.count_solve(std::chrono::duration<double>(std::chrono::steady_clock::now() - context.solve_start).count());
+  context.solver.count_solve(
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - context.solve_start).count());
   return 0;
 }
 
@@ -160,7 +161,8 @@ void configure(::SNES snes, Context& context, ::Vec residual, int max_iterations
   check(SNESSetApplicationContext(snes, &context), "SNESSetApplicationContext");
   check(SNESSetKSP(snes, context.solver.handle()), "SNESSetKSP");
   check(SNESSetFunction(snes, residual, form_residual, &context), "SNESSetFunction");
-  check(SNESSetJacobian(snes, context.tangent.handle(), context.tangent.handle(), form_tangent, &context), "SNESSetJacobian");
+  check(SNESSetJacobian(snes, context.tangent.handle(), context.tangent.handle(), form_tangent, &context),
+        "SNESSetJacobian");
   check(SNESSetUpdate(snes, start_iteration), "SNESSetUpdate");
   check(SNESSetConvergenceTest(snes, judge, &context, nullptr), "SNESSetConvergenceTest");
   check(SNESSetTolerances(snes, 0, 0, 0, max_iterations, 1000000), "SNESSetTolerances");
@@ -175,8 +177,8 @@ void configure(::SNES snes, Context& context, ::Vec residual, int max_iterations
 
 }  // namespace
 
-SnesOutcome run_snes(const SnesCallbacks& callbacks, SymmetricMatrix& tangent, DirectSolver& solver, Vector& x,
-                     int max_iterations) {
+SnesOutcome run_snes(const SnesCallbacks& callbacks, SymmetricMatrix& tangent, DirectSolver& solver,
+                     Vector& x, int max_iterations) {
   Context context{callbacks, tangent, solver, nullptr};
   const Handle snes;
   ::Vec residual = nullptr;

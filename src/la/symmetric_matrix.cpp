@@ -12,7 +12,8 @@ namespace tautline::la {
 
 SymmetricMatrix::SymmetricMatrix(const BlockLayout& layout, const BlockPattern& pattern) : layout_(layout) {
   check(MatCreate(PETSC_COMM_WORLD, &mat_), "MatCreate");
-  check(MatSetSizes(mat_, 3 * layout.local, 3 * layout.local, 3 * layout.total, 3 * layout.total), "MatSetSizes");
+  check(MatSetSizes(mat_, 3 * layout.local, 3 * layout.local, 3 * layout.total, 3 * layout.total),
+        "MatSetSizes");
   check(MatSetBlockSize(mat_, 3), "MatSetBlockSize");
   check(MatSetType(mat_, MATSBAIJ), "MatSetType");
   check(MatSeqSBAIJSetPreallocation(mat_, 3, 0, pattern.diagonal.data()), "MatSeqSBAIJSetPreallocation");
@@ -37,7 +38,9 @@ SymmetricMatrix& SymmetricMatrix::operator=(SymmetricMatrix&& other) noexcept {
   return *this;
 }
 
-void SymmetricMatrix::set_zero() { check(MatZeroEntries(mat_), "MatZeroEntries"); }
+void SymmetricMatrix::set_zero() {
+  check(MatZeroEntries(mat_), "MatZeroEntries");
+}
 
 void SymmetricMatrix::add(std::span<const int> blocks, const double* values) {
   const int n = static_cast<int>(blocks.size());
@@ -47,7 +50,8 @@ void SymmetricMatrix::add(std::span<const int> blocks, const double* values) {
     const bool own = blocks[i] >= layout_.first && blocks[i] < layout_.first + layout_.local;
     rows[i] = own ? blocks[i] : -1;
   }
-  check(MatSetValuesBlocked(mat_, n, rows.data(), n, blocks.data(), values, ADD_VALUES), "MatSetValuesBlocked");
+  check(MatSetValuesBlocked(mat_, n, rows.data(), n, blocks.data(), values, ADD_VALUES),
+        "MatSetValuesBlocked");
 }
 
 void SymmetricMatrix::finish() {
@@ -55,7 +59,9 @@ void SymmetricMatrix::finish() {
   check(MatAssemblyEnd(mat_, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd");
 }
 
-void SymmetricMatrix::multiply(const Vector& x, Vector& y) const { check(MatMult(mat_, x.handle(), y.handle()), "MatMult"); }
+void SymmetricMatrix::multiply(const Vector& x, Vector& y) const {
+  check(MatMult(mat_, x.handle(), y.handle()), "MatMult");
+}
 
 std::vector<long double> SymmetricMatrix::multiply_extended(const std::vector<double>& x) const {
   std::vector<long double> y(x.size(), 0.0L);
@@ -73,7 +79,8 @@ std::vector<long double> SymmetricMatrix::multiply_extended(const std::vector<do
     check(MatRestoreRow(mat_, row, &n, &columns, &values), "MatRestoreRow");
   }
   check(MatRestoreRowUpperTriangular(mat_), "MatRestoreRowUpperTriangular");
-  MPI_Allreduce(MPI_IN_PLACE, y.data(), static_cast<int>(y.size()), MPI_LONG_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, y.data(), static_cast<int>(y.size()), MPI_LONG_DOUBLE, MPI_SUM,
+                PETSC_COMM_WORLD);
   return y;
 }
 

@@ -50,7 +50,9 @@ int Vector::local_size() const {
   return n;
 }
 
-void Vector::set_zero() { check(VecZeroEntries(vec_), "VecZeroEntries"); }
+void Vector::set_zero() {
+  check(VecZeroEntries(vec_), "VecZeroEntries");
+}
 
 double Vector::norm() const {
   PetscReal value = 0;
@@ -104,8 +106,8 @@ void Vector::gather(std::vector<double>& all) const {
   all.resize(static_cast<std::size_t>(shares.starts.back() + shares.counts.back()));
   const PetscScalar* array = nullptr;
   check(VecGetArrayRead(vec_, &array), "VecGetArrayRead");
-  MPI_Allgatherv(array, local_size(), MPI_DOUBLE, all.data(), shares.counts.data(), shares.starts.data(), MPI_DOUBLE,
-                 PETSC_COMM_WORLD);
+  MPI_Allgatherv(array, local_size(), MPI_DOUBLE, all.data(), shares.counts.data(), shares.starts.data(),
+                 MPI_DOUBLE, PETSC_COMM_WORLD);
   check(VecRestoreArrayRead(vec_, &array), "VecRestoreArrayRead");
 }
 

@@ -37,9 +37,12 @@ std::vector<int> partition(const Graph& graph, int parts) {
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = 1;
   Graph copy = graph;
-  const int code = METIS_PartGraphKway(&vertices, &constraints, copy.start.data(), copy.neighbour.data(), copy.weight.data(),
-                                       nullptr, nullptr, &wanted, nullptr, nullptr, options, &cut, result.data());
-  if (code != METIS_OK) throw LibraryError(fmt::format("METIS could not partition the mesh into {} parts (code {})", parts, code));
+  const int code = METIS_PartGraphKway(&vertices, &constraints, copy.start.data(), copy.neighbour.data(),
+                                       copy.weight.data(), nullptr, nullptr, &wanted, nullptr, nullptr,
+                                       options, &cut, result.data());
+  if (code != METIS_OK)
+    throw LibraryError(
+        fmt::format("METIS could not partition the mesh into {} parts (code {})", parts, code));
   return result;
 }
 

@@ -50,14 +50,17 @@ Selection Model::select(const std::string& name) const {
   Selection result;
   if (const auto found = selections.find(name); found != selections.end()) result = found->second;
   if (const int group = find_group(name); group >= 0) {
-    const auto add = [](std::vector<int>& to, std::vector<int> from) { to.insert(to.end(), from.begin(), from.end()); };
+    const auto add = [](std::vector<int>& to, std::vector<int> from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
     add(result.cables, of_group(cables, group));
     add(result.beams, of_group(beams, group));
     add(result.membranes, of_group(membranes, group));
   } else if (!selections.contains(name)) {
     const std::string near = nearest(name, names());
     throw ModelError(fmt::format("nothing in the structure is called \"{}\"{}; known: {}", name,
-                                 near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near), join(names())));
+                                 near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near),
+                                 join(names())));
   }
   append_nodes(cables, result.cables, result.nodes);
   append_nodes(beams, result.beams, result.nodes);
@@ -91,7 +94,9 @@ std::vector<bool> Model::rotational_nodes() const {
   return result;
 }
 
-double Model::reference_length(const Cable& cable) const { return length(*this, cable.nodes); }
+double Model::reference_length(const Cable& cable) const {
+  return length(*this, cable.nodes);
+}
 
 double Model::unstressed_length(const Cable& cable) const {
   return reference_length(cable) / (1.0 + cable.initial_strain);

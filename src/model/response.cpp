@@ -15,9 +15,11 @@ Response evaluate_response(const Model& model, const State& state) {
   response.cables.reserve(model.cables.size());
   for (const auto& cable : model.cables) {
     const auto data = cable_data(model, cable);
-    const auto result = element::evaluate_cable(data.properties, data.x_ref, gather(state, cable.nodes), Want::force);
+    const auto result =
+        element::evaluate_cable(data.properties, data.x_ref, gather(state, cable.nodes), Want::force);
     const double length = (model.nodes[cable.nodes[1]] + state.displacement[cable.nodes[1]] -
-                           model.nodes[cable.nodes[0]] - state.displacement[cable.nodes[0]]).norm();
+                           model.nodes[cable.nodes[0]] - state.displacement[cable.nodes[0]])
+                              .norm();
     response.cables.push_back({length, result.tension, result.slack});
   }
   for (const auto& beam : model.beams) {
@@ -28,7 +30,8 @@ Response evaluate_response(const Model& model, const State& state) {
   }
   for (const auto& membrane : model.membranes) {
     const auto result = element::evaluate_membrane(model.groups[membrane.group].membrane, membrane.prestress,
-                                                   membrane_nodes(model, membrane), gather(state, membrane.nodes), Want::force);
+                                                   membrane_nodes(model, membrane),
+                                                   gather(state, membrane.nodes), Want::force);
     response.membranes.push_back({result.principal_cauchy});
   }
   return response;
@@ -78,7 +81,8 @@ std::map<std::string, GroupSummary> summarise_groups(const Model& model, const R
     ++s.count;
     s.axial_min = std::min(s.axial_min, forces.axial);
     s.axial_max = std::max(s.axial_max, forces.axial);
-    for (int end = 0; end < 2; ++end) s.moment_max = std::max(s.moment_max, forces.end_moment.col(end).tail<2>().norm());
+    for (int end = 0; end < 2; ++end)
+      s.moment_max = std::max(s.moment_max, forces.end_moment.col(end).tail<2>().norm());
   }
   for (std::size_t i = 0; i < model.membranes.size(); ++i) {
     auto& s = summaries[model.membranes[i].group];

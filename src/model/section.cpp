@@ -34,7 +34,9 @@ element::BeamSection beam_section(const Shape& shape, const MaterialOptions& mat
 Shape rectangle(double width, double height) {
   const double a = std::max(width, height) / 2, b = std::min(width, height) / 2, r = b / a;
   const double torsion = a * b * b * b * (16.0 / 3.0 - 3.36 * r * (1 - r * r * r * r / 12));
-  return {width * height, width * std::pow(height, 3) / 12, height * std::pow(width, 3) / 12, torsion, 5.0 / 6.0, 5.0 / 6.0};
+  return {
+      width * height, width * std::pow(height, 3) / 12, height * std::pow(width, 3) / 12, torsion, 5.0 / 6.0,
+      5.0 / 6.0};
 }
 
 Shape round_bar(double diameter, double nu) {
@@ -76,8 +78,9 @@ element::MembraneSection membrane_section(const MembraneSectionOptions& o, const
 }
 
 element::BeamSection general(const GeneralBeamSectionOptions& o) {
-  return {o.axial_stiffness, o.bending_stiffness_2, o.bending_stiffness_3, o.torsion_stiffness, o.shear_stiffness_2,
-          o.shear_stiffness_3, o.mass_per_length, o.rotary_inertia_2, o.rotary_inertia_3};
+  return {o.axial_stiffness,   o.bending_stiffness_2, o.bending_stiffness_3,
+          o.torsion_stiffness, o.shear_stiffness_2,   o.shear_stiffness_3,
+          o.mass_per_length,   o.rotary_inertia_2,    o.rotary_inertia_3};
 }
 
 template <class... Ts>
@@ -95,22 +98,25 @@ ElementKind kind_of(const SectionOptions& section) {
 
 void set_section(Group& group, const SectionOptions& section, const Materials& materials) {
   group.kind = kind_of(section);
-  std::visit(Overloaded{
-                 [&](const CableSectionOptions& o) { group.cable = cable_section(o, materials); },
+  std::visit(
+      Overloaded{[&](const CableSectionOptions& o) { group.cable = cable_section(o, materials); },
                  [&](const MembraneSectionOptions& o) { group.membrane = membrane_section(o, materials); },
                  [&](const RectangleSectionOptions& o) {
-                   group.beam = beam_section(rectangle(o.width, o.height), materials.at(o.material), o.shear_flexible);
+                   group.beam =
+                       beam_section(rectangle(o.width, o.height), materials.at(o.material), o.shear_flexible);
                  },
                  [&](const RoundSectionOptions& o) {
                    const auto& material = materials.at(o.material);
-                   group.beam = beam_section(round_bar(o.diameter, material.poisson_ratio), material, o.shear_flexible);
+                   group.beam = beam_section(round_bar(o.diameter, material.poisson_ratio), material,
+                                             o.shear_flexible);
                  },
                  [&](const TubeSectionOptions& o) {
                    const auto& material = materials.at(o.material);
-                   group.beam = beam_section(tube(o.diameter, o.thickness, material.poisson_ratio), material, o.shear_flexible);
+                   group.beam = beam_section(tube(o.diameter, o.thickness, material.poisson_ratio), material,
+                                             o.shear_flexible);
                  },
                  [&](const GeneralBeamSectionOptions& o) { group.beam = general(o); }},
-             section);
+      section);
 }
 
 void set_initial_state(Model& model, int group, const GroupOptions& options) {
@@ -124,7 +130,8 @@ void set_initial_state(Model& model, int group, const GroupOptions& options) {
     if (options.prestrain) cable.initial_strain = *options.prestrain;
   }
   for (auto& membrane : model.membranes)
-    if (membrane.group == group && options.prestress) membrane.prestress = {*options.prestress, *options.prestress, 0};
+    if (membrane.group == group && options.prestress)
+      membrane.prestress = {*options.prestress, *options.prestress, 0};
 }
 
 }  // namespace tautline::model

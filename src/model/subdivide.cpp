@@ -13,7 +13,9 @@ namespace {
 
 using Edge = std::pair<int, int>;
 
-Edge edge_of(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+Edge edge_of(int a, int b) {
+  return {std::min(a, b), std::max(a, b)};
+}
 
 /// Resultants N0 given in the frame of one triangle, seen from the frame of another in the same plane.
 Vec3 turned(const Vec3& resultants, const Mat3& from, const Mat3& to) {
@@ -48,19 +50,23 @@ class Subdivider {
     if (options_.subdivisions < 1)
       throw ModelError(fmt::format("subdivisions must be 1 or more, is {}", options_.subdivisions));
     if (options_.pattern == FacetPattern::mapped && options_.subdivisions % 2 != 0 && !old_.membranes.empty())
-      throw ModelError(fmt::format("the mapped pattern needs an even number of subdivisions, not {}", options_.subdivisions));
+      throw ModelError(fmt::format("the mapped pattern needs an even number of subdivisions, not {}",
+                                   options_.subdivisions));
     for (const auto& [name, parts] : options_.group_subdivisions) {
       const int group = old_.find_group(name);
       if (group < 0) throw ModelError(fmt::format("group_subdivisions: no group is called \"{}\"", name));
       if (old_.groups[group].kind == ElementKind::membrane)
         throw ModelError(fmt::format("group_subdivisions: \"{}\" are membranes; use subdivisions", name));
-      if (parts < 1) throw ModelError(fmt::format("group_subdivisions: \"{}\" needs 1 or more parts, not {}", name, parts));
+      if (parts < 1)
+        throw ModelError(
+            fmt::format("group_subdivisions: \"{}\" needs 1 or more parts, not {}", name, parts));
     }
   }
 
   void find_facet_sides() {
     for (const auto& facet : old_.membranes)
-      for (int k = 0; k < 3; ++k) sides_[edge_of(facet.nodes[k], facet.nodes[(k + 1) % 3])] = options_.subdivisions;
+      for (int k = 0; k < 3; ++k)
+        sides_[edge_of(facet.nodes[k], facet.nodes[(k + 1) % 3])] = options_.subdivisions;
   }
 
   int parts_of(const Edge& edge, const Group& group) const {
@@ -68,8 +74,8 @@ class Subdivider {
     const auto side = sides_.find(edge);
     if (side != sides_.end()) {
       if (wanted != options_.group_subdivisions.end() && wanted->second != side->second)
-        throw ModelError(fmt::format("group \"{}\" lies on facet sides and must have their {} parts, not {}", group.name,
-                                     side->second, wanted->second));
+        throw ModelError(fmt::format("group \"{}\" lies on facet sides and must have their {} parts, not {}",
+                                     group.name, side->second, wanted->second));
       return side->second;
     }
     if (wanted != options_.group_subdivisions.end()) return wanted->second;
@@ -81,7 +87,8 @@ class Subdivider {
     return static_cast<int>(new_.nodes.size()) - 1;
   }
 
-  /// Nodes along an edge from its first to its second end, both included; made once, shared by all on the edge.
+  /// Nodes along an edge from its first to its second end, both included; made once, shared by all on the
+  /// edge.
   std::vector<int> along(int from, int to, int parts) {
     const Edge edge = edge_of(from, to);
     auto& inner = inner_nodes_[{edge, parts}];
@@ -98,7 +105,8 @@ class Subdivider {
   }
 
   template <class Line>
-  void split_lines(const std::vector<Line>& from, std::vector<Line>& to, std::vector<std::vector<int>>& children) {
+  void split_lines(const std::vector<Line>& from, std::vector<Line>& to,
+                   std::vector<std::vector<int>>& children) {
     for (std::size_t i = 0; i < from.size(); ++i) {
       const auto& [a, b] = from[i].nodes;
       const auto nodes = along(a, b, parts_of(edge_of(a, b), old_.groups[from[i].group]));
@@ -143,11 +151,15 @@ class Subdivider {
     std::vector<std::vector<int>> grid(s + 1);
     for (int j = 0; j <= s; ++j)
       for (int i = 0; i + j <= s; ++i) {
-        if (j == 0) grid[j].push_back(ab[i]);
-        else if (i == 0) grid[j].push_back(ac[j]);
-        else if (i + j == s) grid[j].push_back(bc[j]);
-        else grid[j].push_back(add_node(old_.nodes[a] + (old_.nodes[b] - old_.nodes[a]) * (double(i) / s) +
-                                        (old_.nodes[c] - old_.nodes[a]) * (double(j) / s)));
+        if (j == 0)
+          grid[j].push_back(ab[i]);
+        else if (i == 0)
+          grid[j].push_back(ac[j]);
+        else if (i + j == s)
+          grid[j].push_back(bc[j]);
+        else
+          grid[j].push_back(add_node(old_.nodes[a] + (old_.nodes[b] - old_.nodes[a]) * (double(i) / s) +
+                                     (old_.nodes[c] - old_.nodes[a]) * (double(j) / s)));
       }
     for (int j = 0; j < s; ++j)
       for (int i = 0; i + j < s; ++i) {
@@ -170,20 +182,26 @@ class Subdivider {
       for (int i = 1; i < h; ++i) spoke[k].push_back(add_node(middle + (centre - middle) * (double(i) / h)));
       spoke[k].push_back(centroid);
     }
-    for (int k = 0; k < 3; ++k) split_patch(index, h, side[k], side[(k + 2) % 3], spoke[k], spoke[(k + 2) % 3]);
+    for (int k = 0; k < 3; ++k)
+      split_patch(index, h, side[k], side[(k + 2) % 3], spoke[k], spoke[(k + 2) % 3]);
   }
 
-  /// Patch at a corner: `out` runs along the side that leaves the corner, `in` along the side that arrives at it.
+  /// Patch at a corner: `out` runs along the side that leaves the corner, `in` along the side that arrives at
+  /// it.
   void split_patch(int index, int h, const std::vector<int>& out, const std::vector<int>& in,
                    const std::vector<int>& out_spoke, const std::vector<int>& in_spoke) {
     std::vector<std::vector<int>> grid(h + 1, std::vector<int>(h + 1));
     const auto point = [&](int node) { return new_.nodes[node]; };
     for (int j = 0; j <= h; ++j)
       for (int i = 0; i <= h; ++i) {
-        if (j == 0) grid[j][i] = out[i];
-        else if (i == 0) grid[j][i] = in[2 * h - j];
-        else if (i == h) grid[j][i] = out_spoke[j];
-        else if (j == h) grid[j][i] = in_spoke[i];
+        if (j == 0)
+          grid[j][i] = out[i];
+        else if (i == 0)
+          grid[j][i] = in[2 * h - j];
+        else if (i == h)
+          grid[j][i] = out_spoke[j];
+        else if (j == h)
+          grid[j][i] = in_spoke[i];
         else {
           const double x = double(i) / h, y = double(j) / h;
           grid[j][i] = add_node((1 - x) * (1 - y) * point(out[0]) + x * (1 - y) * point(out[h]) +
@@ -191,7 +209,8 @@ class Subdivider {
         }
       }
     for (int j = 0; j < h; ++j)
-      for (int i = 0; i < h; ++i) split_cell(index, {grid[j][i], grid[j][i + 1], grid[j + 1][i + 1], grid[j + 1][i]});
+      for (int i = 0; i < h; ++i)
+        split_cell(index, {grid[j][i], grid[j][i + 1], grid[j + 1][i + 1], grid[j + 1][i]});
   }
 
   /// Two triangles of a quadrilateral, divided along its shorter diagonal.
@@ -238,6 +257,8 @@ class Subdivider {
 
 }  // namespace
 
-Model subdivide(const Model& structure, const SubdivideOptions& options) { return Subdivider(structure, options).run(); }
+Model subdivide(const Model& structure, const SubdivideOptions& options) {
+  return Subdivider(structure, options).run();
+}
 
 }  // namespace tautline::model

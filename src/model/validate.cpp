@@ -42,7 +42,8 @@ void check_elements(const Model& model, const Elements& elements, const char* ki
   for (std::size_t i = 0; i < elements.size(); ++i) {
     const auto& nodes = elements[i].nodes;
     const std::string who = faults.element(kind, i, elements[i].group);
-    if (model.groups[elements[i].group].kind != expected) faults.add("{}: the group's section is of another kind", who);
+    if (model.groups[elements[i].group].kind != expected)
+      faults.add("{}: the group's section is of another kind", who);
     bool known = true;
     for (const int node : nodes) known = known && node >= 0 && node < n_nodes;
     if (!known) {
@@ -58,10 +59,13 @@ void check_elements(const Model& model, const Elements& elements, const char* ki
 void check_groups(const Model& model, Faults& faults) {
   for (const auto& group : model.groups) {
     const auto positive = [&](double value, const char* what) {
-      if (!(value > 0) || !std::isfinite(value)) faults.add("group \"{}\": {} must be positive, is {:g}", group.name, what, value);
+      if (!(value > 0) || !std::isfinite(value))
+        faults.add("group \"{}\": {} must be positive, is {:g}", group.name, what, value);
     };
-    if (group.kind == ElementKind::cable) positive(group.cable.axial_stiffness, "the axial stiffness E A [N]");
-    if (group.kind == ElementKind::membrane) positive(group.membrane.tension_stiffness, "the tension stiffness E h [N/m]");
+    if (group.kind == ElementKind::cable)
+      positive(group.cable.axial_stiffness, "the axial stiffness E A [N]");
+    if (group.kind == ElementKind::membrane)
+      positive(group.membrane.tension_stiffness, "the tension stiffness E h [N/m]");
     if (group.kind == ElementKind::beam) {
       positive(group.beam.axial_stiffness, "the axial stiffness E A [N]");
       positive(group.beam.bending_stiffness_2, "the bending stiffness about axis 2 [N m^2]");

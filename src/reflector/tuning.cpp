@@ -20,7 +20,8 @@ VecX rule_change(const Paraboloid& surface, const Points& front_positions) {
 
 namespace {
 
-/// Weighted squares of the deviation as a quadratic form in nodal values: W (symmetric) and b = W d by quadrature.
+/// Weighted squares of the deviation as a quadratic form in nodal values: W (symmetric) and b = W d by
+/// quadrature.
 struct SurfaceForm {
   Eigen::SparseMatrix<double> weight;
   VecX load;
@@ -30,7 +31,8 @@ bool inside(const SurfaceSample& sample, const Vec3& point) {
   return !(sample.radius > 0) || point.head<2>().norm() <= sample.radius;
 }
 
-SurfaceForm nodal_form(const Paraboloid& surface, const SurfaceSample& sample, const std::vector<int>& nodes) {
+SurfaceForm nodal_form(const Paraboloid& surface, const SurfaceSample& sample,
+                       const std::vector<int>& nodes) {
   const auto n = static_cast<Eigen::Index>(nodes.size());
   SurfaceForm form{Eigen::SparseMatrix<double>(n, n), VecX::Zero(n)};
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -42,7 +44,8 @@ SurfaceForm nodal_form(const Paraboloid& surface, const SurfaceSample& sample, c
   return form;
 }
 
-/// Consistent weights: facets integrated at the middles of their sides, of quarter facets near the rim of the circle.
+/// Consistent weights: facets integrated at the middles of their sides, of quarter facets near the rim of the
+/// circle.
 SurfaceForm area_form(const Paraboloid& surface, const SurfaceSample& sample, const std::vector<int>& nodes) {
   std::map<int, int> local;
   for (std::size_t i = 0; i < nodes.size(); ++i) local[nodes[i]] = static_cast<int>(i);
@@ -70,7 +73,8 @@ SurfaceForm area_form(const Paraboloid& surface, const SurfaceSample& sample, co
 }
 
 /// Change of each node's deviation along z for a unit change of each length: u_z - slope . (u_x, u_y).
-MatX deviation_influence(const Paraboloid& surface, const SurfaceSample& sample, const TieInfluence& influence) {
+MatX deviation_influence(const Paraboloid& surface, const SurfaceSample& sample,
+                         const TieInfluence& influence) {
   const auto n = static_cast<Eigen::Index>(influence.nodes.size());
   MatX result(n, influence.displacement.cols());
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -86,8 +90,9 @@ MatX deviation_influence(const Paraboloid& surface, const SurfaceSample& sample,
 
 VecX sensitivity_change(const Paraboloid& surface, const SurfaceSample& sample, const TieInfluence& influence,
                         const TuningOptions& options) {
-  const SurfaceForm form = options.objective == TuningObjective::nodes ? nodal_form(surface, sample, influence.nodes)
-                                                                        : area_form(surface, sample, influence.nodes);
+  const SurfaceForm form = options.objective == TuningObjective::nodes
+                               ? nodal_form(surface, sample, influence.nodes)
+                               : area_form(surface, sample, influence.nodes);
   // In tie tensions t: length changes are S^-1 t and deviations d + J S^-1 t.
   const Eigen::PartialPivLU<MatX> lengths(influence.tension);
   const MatX to_lengths = lengths.inverse();

@@ -19,27 +19,36 @@ namespace {
 /// Adds elements of one group; the kind follows from the group's section.
 class ElementAdder {
  public:
-  ElementAdder(model::Model& model, const std::string& group) : model_(model), group_(model.find_group(group)) {
+  ElementAdder(model::Model& model, const std::string& group)
+      : model_(model), group_(model.find_group(group)) {
     if (group_ < 0)
-      throw ModelError(fmt::format("group \"{}\" has elements but no section: give it one under \"groups\"", group));
+      throw ModelError(
+          fmt::format("group \"{}\" has elements but no section: give it one under \"groups\"", group));
   }
 
   void line(const std::array<int, 2>& nodes) {
     switch (model_.groups[group_].kind) {
-      case model::ElementKind::cable: model_.cables.push_back({nodes, group_}); return;
-      case model::ElementKind::beam: model_.beams.push_back({nodes, group_}); return;
-      case model::ElementKind::membrane: throw wrong("lines", "a membrane");
+      case model::ElementKind::cable:
+        model_.cables.push_back({nodes, group_});
+        return;
+      case model::ElementKind::beam:
+        model_.beams.push_back({nodes, group_});
+        return;
+      case model::ElementKind::membrane:
+        throw wrong("lines", "a membrane");
     }
   }
 
   void triangle(const std::array<int, 3>& nodes) {
-    if (model_.groups[group_].kind != model::ElementKind::membrane) throw wrong("triangles", "a cable or beam");
+    if (model_.groups[group_].kind != model::ElementKind::membrane)
+      throw wrong("triangles", "a cable or beam");
     model_.membranes.push_back({nodes, group_});
   }
 
  private:
   ModelError wrong(const char* cells, const char* section) const {
-    return ModelError(fmt::format("group \"{}\" has {} but its section is for {}", model_.groups[group_].name, cells, section));
+    return ModelError(fmt::format("group \"{}\" has {} but its section is for {}", model_.groups[group_].name,
+                                  cells, section));
   }
 
   model::Model& model_;
@@ -63,8 +72,10 @@ void add_inline(model::Model& model, const model::ModelOptions& options, const d
   for (const auto& block : options.elements) {
     ElementAdder add(model, block.group);
     for (const auto& names : block.connectivity) {
-      if (names.size() == 2) add.line({index.at(names[0]), index.at(names[1])});
-      else add.triangle({index.at(names[0]), index.at(names[1]), index.at(names[2])});
+      if (names.size() == 2)
+        add.line({index.at(names[0]), index.at(names[1])});
+      else
+        add.triangle({index.at(names[0]), index.at(names[1]), index.at(names[2])});
     }
   }
   for (const auto& [name, group] : deck.groups)
@@ -82,7 +93,8 @@ void add_mesh(model::Model& model, const std::string& file) {
     if (model.find_group(name) < 0) {  // a physical group without section only names nodes
       auto& nodes = model.selections[name].nodes;
       for (const auto& line : cells.lines) nodes.insert(nodes.end(), {offset + line[0], offset + line[1]});
-      for (const auto& t : cells.triangles) nodes.insert(nodes.end(), {offset + t[0], offset + t[1], offset + t[2]});
+      for (const auto& t : cells.triangles)
+        nodes.insert(nodes.end(), {offset + t[0], offset + t[1], offset + t[2]});
       continue;
     }
     ElementAdder add(model, name);
@@ -95,10 +107,12 @@ void check_sections(const model::Model& model, const deck::Deck& deck) {
   for (const auto& group : model.groups) {
     const auto found = deck.groups.find(group.name);
     if (found == deck.groups.end() || found->second.section.empty())
-      throw ModelError(fmt::format("group \"{}\" of the structure has no section: add it under \"groups\"", group.name));
+      throw ModelError(
+          fmt::format("group \"{}\" of the structure has no section: add it under \"groups\"", group.name));
     const auto kind = model::kind_of(deck.sections.at(found->second.section));
     if (kind != group.kind)
-      throw ModelError(fmt::format("group \"{}\": section \"{}\" is for another kind of element", group.name, found->second.section));
+      throw ModelError(fmt::format("group \"{}\": section \"{}\" is for another kind of element", group.name,
+                                   found->second.section));
   }
   if (deck.reflector) return;  // a part of a reflector may be switched off while the deck still describes it
   for (const auto& [name, options] : deck.groups) {
@@ -107,8 +121,9 @@ void check_sections(const model::Model& model, const deck::Deck& deck) {
       return std::any_of(elements.begin(), elements.end(), [&](const auto& e) { return e.group == group; });
     };
     if (!options.section.empty() && !in(model.cables) && !in(model.beams) && !in(model.membranes))
-      throw ModelError(fmt::format("{}:{}:{}: group \"{}\" has a section but no elements: the structure has none of that name",
-                                   options.where.file, options.where.line, options.where.column, name));
+      throw ModelError(fmt::format(
+          "{}:{}:{}: group \"{}\" has a section but no elements: the structure has none of that name",
+          options.where.file, options.where.line, options.where.column, name));
   }
 }
 
@@ -124,7 +139,8 @@ void give_sections(model::Model& model, const deck::Deck& deck) {
 }
 
 /// Names in supports and loads are looked up where the deck mentions them.
-std::vector<int> look_up(const model::Model& model, const std::vector<std::string>& names, const SourceLocation& where) {
+std::vector<int> look_up(const model::Model& model, const std::vector<std::string>& names,
+                         const SourceLocation& where) {
   try {
     return model.nodes_of(names);
   } catch (const ModelError& error) {
@@ -151,7 +167,8 @@ model::Model build_structure(const deck::Deck& deck) {
     beam.frame = element::beam_frame(x, model.groups[beam.group].orientation);
   }
   for (const auto& support : deck.supports)
-    model.supports.push_back({support.name, support.on, look_up(model, support.on, support.where), support.fixed});
+    model.supports.push_back(
+        {support.name, support.on, look_up(model, support.on, support.where), support.fixed});
   for (const auto& load : deck.loads)
     if (!load.on.empty())
       model.loads.push_back({load.name, look_up(model, load.on, load.where), load.force, load.moment});

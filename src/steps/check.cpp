@@ -11,8 +11,9 @@ namespace tautline::steps {
 namespace {
 
 std::string model_text(const model::Model& model) {
-  std::string text = fmt::format("structure  {} nodes, {} cables, {} beams, {} membranes, {:.4g} kg\n", model.nodes.size(),
-                                 model.cables.size(), model.beams.size(), model.membranes.size(), model::total_mass(model));
+  std::string text =
+      fmt::format("structure  {} nodes, {} cables, {} beams, {} membranes, {:.4g} kg\n", model.nodes.size(),
+                  model.cables.size(), model.beams.size(), model.membranes.size(), model::total_mass(model));
   for (const auto& [name, mass] : model::mass_by_group(model)) {
     const auto selection = model.select(name);
     text += fmt::format("  {:<20} {:>6} elements {:>12.4g} kg\n", name,
@@ -55,8 +56,8 @@ std::string check(const deck::Deck& deck) {
   Context context(deck, "", false, silent);
   model::validate(context.structure);
   foretell_mechanisms(context);
-  return fmt::format("{}\n{}{}nothing found that would keep it from being solved\n", deck.title, model_text(context.structure),
-                     steps_text(deck));
+  return fmt::format("{}\n{}{}nothing found that would keep it from being solved\n", deck.title,
+                     model_text(context.structure), steps_text(deck));
 }
 
 }  // namespace tautline::steps

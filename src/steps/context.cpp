@@ -15,8 +15,13 @@
 namespace tautline::steps {
 
 Context::Context(const deck::Deck& the_deck, std::string directory, bool pictures, Progress& the_progress)
-    : deck(the_deck), progress(the_progress), structure(build_structure(the_deck)), directory_(std::move(directory)),
-      pictures_(pictures), root_(la::rank() == 0), fields_(directory_, la::rank(), la::size()) {
+    : deck(the_deck),
+      progress(the_progress),
+      structure(build_structure(the_deck)),
+      directory_(std::move(directory)),
+      pictures_(pictures),
+      root_(la::rank() == 0),
+      fields_(directory_, la::rank(), la::size()) {
   if (deck.reflector) surface = reflector::make_paraboloid(*deck.reflector);
 }
 
@@ -80,8 +85,8 @@ void Context::write_fields(const std::string& name, const output::FieldGrid& gri
   fields_.write(name, output::extract_piece(grid, owner, la::rank()));
 }
 
-assembly::Boundary Context::boundary(const std::vector<std::string>& hold, const std::vector<std::string>& loads,
-                                     bool loaded) const {
+assembly::Boundary Context::boundary(const std::vector<std::string>& hold,
+                                     const std::vector<std::string>& loads, bool loaded) const {
   const auto& model = system_->model();
   assembly::Boundary boundary;
   boundary.supports = model.supports;
@@ -99,8 +104,8 @@ assembly::Boundary Context::boundary(const std::vector<std::string>& hold, const
 
 analysis::PathSummary follow(Context& context, const std::string& what) {
   const auto report = [&](double lambda, int iteration, double residual) {
-    context.progress.update(
-        fmt::format("{} | {}: lambda {:.4g}, iteration {}, residual {:.1e}", context.step_name, what, lambda, iteration, residual));
+    context.progress.update(fmt::format("{} | {}: lambda {:.4g}, iteration {}, residual {:.1e}",
+                                        context.step_name, what, lambda, iteration, residual));
   };
   return analysis::follow_path(context.system(), context.workspace(), context.deck.solver, report);
 }

@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// What the steps of a run share: the structure as it becomes clearer, the finite-element system, and where results go.
+/// What the steps of a run share: the structure as it becomes clearer, the finite-element system, and where
+/// results go.
 
 #include <chrono>
 #include <memory>
@@ -27,10 +28,10 @@ class Context {
 
   const deck::Deck& deck;
   Progress& progress;
-  model::Model structure;                         ///< as described; after form-finding, as found
-  std::optional<reflector::Paraboloid> surface;   ///< of a reflector
-  std::string step_name;                          ///< of the step in hand
-  Json results;                                   ///< the whole results.json
+  model::Model structure;                        ///< as described; after form-finding, as found
+  std::optional<reflector::Paraboloid> surface;  ///< of a reflector
+  std::string step_name;                         ///< of the step in hand
+  Json results;                                  ///< the whole results.json
 
   /// Time spent on pictures and files so far [s].
   double output_seconds() const { return output_seconds_; }
@@ -50,13 +51,16 @@ class Context {
   std::string path(const std::string& name) const { return directory_ + "/" + name; }
   /// Writes results.json (rank 0).
   void save();
-  /// Draws DIR/pictures/<step>_<name>.png (rank 0) and notes it with its caption; a failure to draw is told once and noted.
+  /// Draws DIR/pictures/<step>_<name>.png (rank 0) and notes it with its caption; a failure to draw is told
+  /// once and noted.
   void draw(const std::string& name, const std::string& caption, const output::View& view);
   void draw(const std::string& name, const std::string& caption, const output::Chart& chart);
   /// Writes a moment of fields (all ranks, each its piece).
   void write_fields(const std::string& name, const output::FieldGrid& grid);
-  /// Boundary with the deck's supports, all of `hold` clamped, and the loads named (all if empty and `loaded`).
-  assembly::Boundary boundary(const std::vector<std::string>& hold, const std::vector<std::string>& loads, bool loaded) const;
+  /// Boundary with the deck's supports, all of `hold` clamped, and the loads named (all if empty and
+  /// `loaded`).
+  assembly::Boundary boundary(const std::vector<std::string>& hold, const std::vector<std::string>& loads,
+                              bool loaded) const;
 
  private:
   template <class Picture>
@@ -70,11 +74,12 @@ class Context {
   output::FieldSeries fields_;
 };
 
-/// The structure of a deck: reflector or model, with sections, initial states, supports and loads. @throws ModelError
+/// The structure of a deck: reflector or model, with sections, initial states, supports and loads. @throws
+/// ModelError
 model::Model build_structure(const deck::Deck& deck);
 
-// One function for each step kind, in the file of that name. Each returns its entry of results.json without name, kind and
-// times; `status` is "done" or "not_converged".
+// One function for each step kind, in the file of that name. Each returns its entry of results.json without
+// name, kind and times; `status` is "done" or "not_converged".
 Json run_step(Context& context, const FormFindingOptions& options);
 Json run_step(Context& context, const MeshOptions& options);
 Json run_step(Context& context, const EquilibriumOptions& options);

@@ -24,20 +24,23 @@ Json newton_table(const analysis::PathSummary& path) {
   for (const auto& point : path.points) {
     Json rows = Json::array();
     for (const auto& iteration : point.newton.iterations)
-      rows.push_back(Json::array({rounded(above_rounding(iteration.norms.force, 1e-10 * iteration.norms.reference_force)),
-                                  rounded(above_rounding(iteration.increment, 1e-12))}));
+      rows.push_back(Json::array(
+          {rounded(above_rounding(iteration.norms.force, 1e-10 * iteration.norms.reference_force)),
+           rounded(above_rounding(iteration.increment, 1e-12))}));
     table.push_back({{"lambda", point.lambda}, {"force_and_increment", rows}});
   }
   return table;
 }
 
 /// One stage: returns its entry; `reached` says whether lambda came to 1.
-Json run_stage(Context& context, const StageOptions& stage, const assembly::Boundary& boundary, bool& reached) {
+Json run_stage(Context& context, const StageOptions& stage, const assembly::Boundary& boundary,
+               bool& reached) {
   auto& system = context.system();
   double seconds = 0;
   auto watch = std::make_optional<Stopwatch>(seconds);
   const auto start = system.begin_stage(boundary);
-  context.progress.say(fmt::format("{} | {}: out-of-balance at the start {:.3e} N", context.step_name, stage.name, start.force));
+  context.progress.say(fmt::format("{} | {}: out-of-balance at the start {:.3e} N", context.step_name,
+                                   stage.name, start.force));
   const auto path = follow(context, stage.name);
   watch.reset();
   reached = path.reached;
@@ -74,8 +77,10 @@ Json run_step(Context& context, const EquilibriumOptions& options) {
     entry["stages"].push_back(run_stage(context, stages[i], boundary, reached));
     if (reached) continue;
     entry["status"] = "not_converged";
-    entry["reason"] = fmt::format("stage \"{}\" {}. Try a stage in between that holds more, a smaller solver.min_step, or check the "
-                                  "structure for a mechanism (tautline check)", stages[i].name, entry["stages"].back()["reason"].get<std::string>());
+    entry["reason"] = fmt::format(
+        "stage \"{}\" {}. Try a stage in between that holds more, a smaller solver.min_step, or check the "
+        "structure for a mechanism (tautline check)",
+        stages[i].name, entry["stages"].back()["reason"].get<std::string>());
     break;
   }
   const auto response = model::evaluate_response(system.model(), system.state());

@@ -4,7 +4,8 @@
 
 namespace tautline::steps {
 
-std::optional<Extrapolation> extrapolate_three(const std::vector<double>& size, const std::vector<double>& value) {
+std::optional<Extrapolation> extrapolate_three(const std::vector<double>& size,
+                                               const std::vector<double>& value) {
   const std::size_t n = size.size();
   if (n < 3) return std::nullopt;
   const double h1 = size[n - 1], h2 = size[n - 2], h3 = size[n - 3];

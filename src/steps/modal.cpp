@@ -34,9 +34,10 @@ std::vector<la::Vector> rigid_motions(const assembly::System& system) {
   return motions;
 }
 
-/// (r^T M phi)^2 for modes normalised to phi^T M phi = 1: the mass that takes part [kg], [kg m^2]. What symmetry makes zero comes
-/// out as rounding; below 1e-5 of the whole it is reported as zero.
-Json effective_masses(const assembly::System& system, const la::SymmetricMatrix& mass, const la::EigenPairs& pairs) {
+/// (r^T M phi)^2 for modes normalised to phi^T M phi = 1: the mass that takes part [kg], [kg m^2]. What
+/// symmetry makes zero comes out as rounding; below 1e-5 of the whole it is reported as zero.
+Json effective_masses(const assembly::System& system, const la::SymmetricMatrix& mass,
+                      const la::EigenPairs& pairs) {
   const auto motions = rigid_motions(system);
   Json table = Json::array();
   la::Vector product(system.layout());
@@ -80,7 +81,7 @@ void draw_mode(Context& context, const Points& shape, int number, double frequen
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  const double size = 0.08 * (high - low).norm();
+  const double size = 0.05 * (high - low).norm();
   output::ViewLayer surface, frame, rest;
   for (std::size_t i = 0; i < points.size(); ++i) surface.point_scalars.push_back(shape[i].norm());
   rest.points = points;
@@ -91,13 +92,15 @@ void draw_mode(Context& context, const Points& shape, int number, double frequen
   if (model.membranes.empty())
     for (const auto& c : model.cables) surface.lines.push_back(c.nodes);
   rest.lines = frame.lines;
-  frame.line_width = 3;
+  rest.line_width = 1;
+  frame.line_width = 2.5;
   rest.colour = Vec3(0.75, 0.75, 0.78);
   output::View view;
   view.title = fmt::format("Mode {}: {:.4g} Hz", number, frequency);
   view.layers = {std::move(surface), std::move(rest), std::move(frame)};
   view.scalar_title = "relative amplitude";
-  context.draw(fmt::format("mode_{}", number), fmt::format("Mode {} of the prestressed structure, {:.4g} Hz (amplitude enlarged; grey: at rest)", number, frequency), view);
+  context.draw(fmt::format("mode_{}", number),
+               fmt::format("Mode {}, {:.4g} Hz; light grey: at rest", number, frequency), view);
 }
 
 }  // namespace
@@ -108,7 +111,8 @@ Json run_step(Context& context, const ModalOptions& options) {
   auto& workspace = context.workspace();
   system.tangent(workspace.tangent);
   const auto mass = system.mass();
-  context.progress.update(fmt::format("{} | {} modes of {} unknowns", context.step_name, options.modes, system.n_dofs()));
+  context.progress.update(
+      fmt::format("{} | {} modes of {} unknowns", context.step_name, options.modes, system.n_dofs()));
   const auto pairs = la::solve_vibration(workspace.tangent, mass, options.modes);
   workspace.solver.add(pairs.timings);
   Json entry;
@@ -120,7 +124,8 @@ Json run_step(Context& context, const ModalOptions& options) {
   grid.point_fields.clear();
   for (int i = 0; i < options.modes; ++i) {
     const double eigenvalue = system.second_variation(pairs.vectors[i]);
-    const double frequency = std::copysign(std::sqrt(std::abs(eigenvalue)), eigenvalue) / (2 * std::numbers::pi);
+    const double frequency =
+        std::copysign(std::sqrt(std::abs(eigenvalue)), eigenvalue) / (2 * std::numbers::pi);
     entry["frequencies"].push_back(frequency);
     entry["residuals"].push_back(above_rounding(pairs.residuals[i], 1e-12));
     const Points shape = display_shape(system, pairs.vectors[i]);
@@ -130,7 +135,8 @@ Json run_step(Context& context, const ModalOptions& options) {
     if (i < 3 && context.draws()) draw_mode(context, shape, i + 1, frequency);
     if (eigenvalue < 0) {
       entry["status"] = "not_converged";
-      entry["reason"] = fmt::format("mode {} has a negative eigenvalue {:.3e}: the state is unstable", i + 1, eigenvalue);
+      entry["reason"] =
+          fmt::format("mode {} has a negative eigenvalue {:.3e}: the state is unstable", i + 1, eigenvalue);
     }
   }
   context.write_fields(context.step_name, grid);

@@ -21,7 +21,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// Counters of the system at one moment, for the difference that a step makes.
 struct Counters {
@@ -30,12 +32,14 @@ struct Counters {
 
   static Counters of(Context& context) {
     if (!context.has_system()) return {{}, 0, context.output_seconds()};
-    return {context.workspace().solver.timings(), context.system().assembly_seconds(), context.output_seconds()};
+    return {context.workspace().solver.timings(), context.system().assembly_seconds(),
+            context.output_seconds()};
   }
 };
 
 void add_performance(Json& entry, const Counters& before, const Counters& after, double wall) {
-  const bool renewed = after.solver.factorisations < before.solver.factorisations || after.assembly < before.assembly;
+  const bool renewed =
+      after.solver.factorisations < before.solver.factorisations || after.assembly < before.assembly;
   const Counters base = renewed ? Counters{{}, 0, before.output} : before;
   const double factorisation = after.solver.factorisation - base.solver.factorisation;
   const double solve = after.solver.solve - base.solver.solve, assembly = after.assembly - base.assembly;
@@ -53,9 +57,13 @@ void add_performance(Json& entry, const Counters& before, const Counters& after,
 Json start_results(const deck::Deck& deck) {
   const auto versions = la::library_versions();
   Json results{{"format", "tautline-results"}, {"version", 1}};
-  results["program"] = {{"version", version()}, {"petsc", versions.petsc}, {"slepc", versions.slepc}, {"mumps", versions.mumps},
+  results["program"] = {{"version", version()},
+                        {"petsc", versions.petsc},
+                        {"slepc", versions.slepc},
+                        {"mumps", versions.mumps},
                         {"ranks", la::size()}};
-  results["deck"] = {{"path", deck.path}, {"sha256", deck.sha256}, {"title", deck.title}, {"parameters", deck.parameters}};
+  results["deck"] = {
+      {"path", deck.path}, {"sha256", deck.sha256}, {"title", deck.title}, {"parameters", deck.parameters}};
   results["status"] = "interrupted";
   results["reason"] = "the run has not come to its end";
   results["steps"] = Json::array();
@@ -73,7 +81,8 @@ std::string run_and_record(Context& context, const Step& step) {
   entry.update(std::visit([&](const auto& options) { return run_step(context, options); }, step.options));
   add_performance(entry, before, Counters::of(context), seconds_since(start));
   const std::string status = entry["status"];
-  if (status != "done") context.results["reason"] = fmt::format("step \"{}\": {}", step.name, entry["reason"].get<std::string>());
+  if (status != "done")
+    context.results["reason"] = fmt::format("step \"{}\": {}", step.name, entry["reason"].get<std::string>());
   context.results["steps"].push_back(std::move(entry));
   return status;
 }
@@ -99,7 +108,7 @@ void finish(Context& context, const RunSettings& settings, Clock::time_point sta
   context.save();
   la::on_root([&] {
     if (context.deck.output.report) output::write_report({settings.directory});
-    std::cout << output::summary_text(context.results) << std::flush;
+    std::cout << output::summary_text(context.results, settings.directory) << std::flush;
   });
 }
 

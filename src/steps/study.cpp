@@ -48,12 +48,15 @@ Json extrapolate(const Json& rows, const std::string& measure) {
 
 void write_csv(const std::string& path, const Json& rows) {
   auto file = fmt::output_file(path);
-  file.print("subdivisions,dofs,rms,rms_direct,rms_best_fit,rms_area_weighted,rms_nodes,newton_iterations,factorisations,solver_seconds,wall_seconds\n");
+  file.print(
+      "subdivisions,dofs,rms,rms_direct,rms_best_fit,rms_area_weighted,rms_nodes,newton_iterations,"
+      "factorisations,solver_seconds,wall_seconds\n");
   for (const auto& row : rows) {
     file.print("{},{}", row["subdivisions"].get<int>(), row["dofs"].get<int>());
     for (const char* measure : measures) file.print(",{:.17g}", row["surface"][measure].get<double>());
-    file.print(",{},{},{:.6g},{:.6g}\n", row["newton_iterations"].get<int>(), row["factorisations"].get<int>(),
-               row["solver_seconds"].get<double>(), row["wall_seconds"].get<double>());
+    file.print(",{},{},{:.6g},{:.6g}\n", row["newton_iterations"].get<int>(),
+               row["factorisations"].get<int>(), row["solver_seconds"].get<double>(),
+               row["wall_seconds"].get<double>());
   }
 }
 
@@ -74,19 +77,24 @@ output::Chart chart_of(const Json& rows) {
 }
 
 std::string text_of(const Json& study) {
-  std::string text = fmt::format("{:>4} {:>9} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>9} {:>9}\n", "s", "unknowns", "rms", "direct",
-                                 "best fit", "area", "nodes", "Newton", "MUMPS s", "wall s");
+  std::string text =
+      fmt::format("{:>4} {:>9} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>9} {:>9}\n", "s", "unknowns",
+                  "rms", "direct", "best fit", "area", "nodes", "Newton", "MUMPS s", "wall s");
   for (const auto& row : study["rows"]) {
     text += fmt::format("{:>4} {:>9}", row["subdivisions"].get<int>(), row["dofs"].get<int>());
-    for (const char* measure : measures) text += fmt::format(" {:>10.4f}", 1e3 * row["surface"][measure].get<double>());
-    text += fmt::format(" {:>7} {:>9.2f} {:>9.2f}\n", row["newton_iterations"].get<int>(), row["solver_seconds"].get<double>(),
-                        row["wall_seconds"].get<double>());
+    for (const char* measure : measures)
+      text += fmt::format(" {:>10.4f}", 1e3 * row["surface"][measure].get<double>());
+    text += fmt::format(" {:>7} {:>9.2f} {:>9.2f}\n", row["newton_iterations"].get<int>(),
+                        row["solver_seconds"].get<double>(), row["wall_seconds"].get<double>());
   }
   text += "(RMS in mm)\n";
   for (const char* measure : measures) {
     const auto& e = study["extrapolation"][measure];
-    if (e.is_null()) text += fmt::format("{:<20} no steady order in the three finest meshes\n", measure);
-    else text += fmt::format("{:<20} order {:.2f}, extrapolated {:.4f} mm\n", measure, e["order"].get<double>(), 1e3 * e["limit"].get<double>());
+    if (e.is_null())
+      text += fmt::format("{:<20} no steady order in the three finest meshes\n", measure);
+    else
+      text += fmt::format("{:<20} order {:.2f}, extrapolated {:.4f} mm\n", measure, e["order"].get<double>(),
+                          1e3 * e["limit"].get<double>());
   }
   return text;
 }
@@ -104,8 +112,8 @@ void write_study(const std::string& directory, const Json& study, bool pictures,
 
 }  // namespace
 
-ExitCode study(const std::string& deck_path, const std::vector<std::string>& overrides, const std::vector<int>& subdivisions,
-               const RunSettings& settings, Progress& progress) {
+ExitCode study(const std::string& deck_path, const std::vector<std::string>& overrides,
+               const std::vector<int>& subdivisions, const RunSettings& settings, Progress& progress) {
   Json study{{"format", "tautline-study"}, {"version", 1}, {"deck", deck_path}, {"rows", Json::array()}};
   ExitCode code = ExitCode::done;
   for (const int s : subdivisions) {
@@ -116,10 +124,12 @@ ExitCode study(const std::string& deck_path, const std::vector<std::string>& ove
     const std::string directory = fmt::format("{}/s{}", settings.directory, s);
     code = run(deck, {directory, settings.pictures}, progress);
     if (code != ExitCode::done) break;
-    la::on_root([&] { study["rows"].push_back(row_of(output::read_results(directory + "/results.json"), s)); });
+    la::on_root(
+        [&] { study["rows"].push_back(row_of(output::read_results(directory + "/results.json"), s)); });
   }
   la::on_root([&] {
-    for (const char* measure : measures) study["extrapolation"][measure] = extrapolate(study["rows"], measure);
+    for (const char* measure : measures)
+      study["extrapolation"][measure] = extrapolate(study["rows"], measure);
     write_study(settings.directory, study, settings.pictures, progress);
     fmt::print("{}", text_of(study));
   });

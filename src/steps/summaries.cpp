@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -9,9 +11,13 @@
 
 namespace tautline::steps {
 
-double above_rounding(double value, double floor) { return std::max(value, floor); }
+double above_rounding(double value, double floor) {
+  return std::max(value, floor);
+}
 
-double rounded(double value) { return std::stod(fmt::format("{:.3g}", value)); }
+double rounded(double value) {
+  return std::stod(fmt::format("{:.3g}", value));
+}
 
 Json groups_json(const std::map<std::string, model::GroupSummary>& groups) {
   Json result = Json::object();
@@ -56,8 +62,10 @@ Json surface_json(const reflector::SurfaceError& e) {
 }
 
 Json model_json(const model::Model& model, int dofs) {
-  return {{"nodes", model.nodes.size()}, {"dofs", dofs}, {"cables", model.cables.size()}, {"beams", model.beams.size()},
-          {"membranes", model.membranes.size()}, {"shells", 0}, {"mass", model::total_mass(model)}};
+  return {{"nodes", model.nodes.size()},         {"dofs", dofs},
+          {"cables", model.cables.size()},       {"beams", model.beams.size()},
+          {"membranes", model.membranes.size()}, {"shells", 0},
+          {"mass", model::total_mass(model)}};
 }
 
 reflector::SurfaceSample surface_sample(Context& context) {
@@ -100,10 +108,12 @@ Field deviation_field(Context& context) {
 /// Cell arrays run over cables, beams, membranes; entries that do not apply are zero.
 class CellArrays {
  public:
-  CellArrays(const model::Model& model, const model::Response& response) : model_(model), response_(response) {}
+  CellArrays(const model::Model& model, const model::Response& response)
+      : model_(model), response_(response) {}
 
   Field scalar(const std::string& name, double (*cable)(const model::CableResult&),
-               double (*beam)(const element::BeamForces&), double (*membrane)(const model::MembraneResult&)) const {
+               double (*beam)(const element::BeamForces&),
+               double (*membrane)(const model::MembraneResult&)) const {
     Field field{name, 1, {}};
     for (const auto& r : response_.cables) field.values.push_back(cable ? cable(r) : 0);
     for (const auto& r : response_.beams) field.values.push_back(beam ? beam(r) : 0);
@@ -152,13 +162,20 @@ output::FieldGrid field_grid(Context& context, const model::Response& response) 
   using model::CableResult, model::MembraneResult, element::BeamForces;
   auto& out = grid.cell_fields;
   out.push_back(arrays.group());
-  out.push_back(arrays.scalar("tension [N]", [](const CableResult& r) { return r.tension; }, nullptr, nullptr));
-  out.push_back(arrays.scalar("slack", [](const CableResult& r) { return r.slack ? 1.0 : 0.0; }, nullptr, nullptr));
-  out.push_back(arrays.scalar("axial force [N]", nullptr, [](const BeamForces& f) { return f.axial; }, nullptr));
-  out.push_back(arrays.scalar("shear 2 [N]", nullptr, [](const BeamForces& f) { return f.shear[0]; }, nullptr));
-  out.push_back(arrays.scalar("shear 3 [N]", nullptr, [](const BeamForces& f) { return f.shear[1]; }, nullptr));
-  out.push_back(arrays.beam_vector("end moments 1 [N m]", [&](std::size_t i) { return Vec3(response.beams[i].end_moment.col(0)); }));
-  out.push_back(arrays.beam_vector("end moments 2 [N m]", [&](std::size_t i) { return Vec3(response.beams[i].end_moment.col(1)); }));
+  out.push_back(arrays.scalar(
+      "tension [N]", [](const CableResult& r) { return r.tension; }, nullptr, nullptr));
+  out.push_back(arrays.scalar(
+      "slack", [](const CableResult& r) { return r.slack ? 1.0 : 0.0; }, nullptr, nullptr));
+  out.push_back(arrays.scalar(
+      "axial force [N]", nullptr, [](const BeamForces& f) { return f.axial; }, nullptr));
+  out.push_back(arrays.scalar(
+      "shear 2 [N]", nullptr, [](const BeamForces& f) { return f.shear[0]; }, nullptr));
+  out.push_back(arrays.scalar(
+      "shear 3 [N]", nullptr, [](const BeamForces& f) { return f.shear[1]; }, nullptr));
+  out.push_back(arrays.beam_vector("end moments 1 [N m]",
+                                   [&](std::size_t i) { return Vec3(response.beams[i].end_moment.col(0)); }));
+  out.push_back(arrays.beam_vector("end moments 2 [N m]",
+                                   [&](std::size_t i) { return Vec3(response.beams[i].end_moment.col(1)); }));
   for (int axis = 0; axis < 3; ++axis)
     out.push_back(arrays.beam_vector(fmt::format("beam axis {}", axis + 1),
                                      [&](std::size_t i) { return Vec3(response.beam_frames[i].col(axis)); }));
@@ -171,53 +188,110 @@ output::FieldGrid field_grid(Context& context, const model::Response& response) 
 
 namespace {
 
+/// Edges of the named group's beams.
+std::vector<std::array<int, 2>> beam_lines(const model::Model& model, const std::string& group) {
+  std::vector<std::array<int, 2>> lines;
+  for (const int i : model.select(group).beams) lines.push_back(model.beams[i].nodes);
+  return lines;
+}
+
+/// A circle of `radius` about the z axis on the surface, as a closed line.
+output::ViewLayer circle_on(const reflector::Paraboloid& surface, double radius) {
+  constexpr int parts = 180;
+  output::ViewLayer layer;
+  for (int i = 0; i < parts; ++i) {
+    const double angle = 2 * std::numbers::pi * i / parts;
+    const double x = radius * std::cos(angle), y = radius * std::sin(angle);
+    layer.points.emplace_back(x, y, surface.height(x, y));
+    layer.lines.push_back({i, (i + 1) % parts});
+  }
+  layer.line_width = 2;
+  return layer;
+}
+
+/// The measured disc of the cloth coloured by deviation about the mean; the rest of it in grey.
 void draw_deviation(Context& context) {
   const auto sample = surface_sample(context);
   const auto error = reflector::measure_surface(*context.surface, sample);
-  output::ViewLayer cloth, frame;
-  cloth.points = frame.points = sample.positions;
+  output::ViewLayer cloth, outside, rim;
+  cloth.points = outside.points = rim.points = sample.positions;
+  outside.colour = Vec3(0.9, 0.9, 0.92);
   cloth.point_scalars.assign(sample.positions.size(), 0.0);
   for (const int node : sample.surface_nodes)
-    cloth.point_scalars[node] = 1e3 * (reflector::deviation(*context.surface, sample.positions[node]) - error.mean_shift);
+    cloth.point_scalars[node] =
+        1e3 * (reflector::deviation(*context.surface, sample.positions[node]) - error.mean_shift);
   double range = 0;
-  const double radius = error.radius > 0 ? error.radius : 1e300;
   for (const auto& triangle : sample.triangles) {
     Vec3 centre = Vec3::Zero();
     for (const int node : triangle) centre += sample.positions[node] / 3;
-    if (centre.head<2>().norm() > radius) continue;
+    if (error.radius > 0 && centre.head<2>().norm() > error.radius) {
+      outside.triangles.push_back(triangle);
+      continue;
+    }
     cloth.triangles.push_back(triangle);
     for (const int node : triangle) range = std::max(range, std::abs(cloth.point_scalars[node]));
   }
-  for (const auto& beam : context.system().model().beams) frame.lines.push_back(beam.nodes);
-  frame.line_width = 2.5;
+  rim.lines = beam_lines(context.system().model(), "front_rim");
+  rim.line_width = 2.5;
   output::View view;
   view.title = "Deviation of the cloth from the paraboloid";
-  view.subtitle = fmt::format("RMS {:.3f} mm over {} nodes, mean shift {:.3f} mm", 1e3 * error.rms, error.samples, 1e3 * error.mean_shift);
+  view.subtitle = fmt::format(
+      "RMS {:.3f} mm over {} nodes{}, about the mean shift of {:.3f} mm", 1e3 * error.rms, error.samples,
+      error.radius > 0 ? fmt::format(" within radius {:g} m", error.radius) : "", 1e3 * error.mean_shift);
   view.scalar_title = "deviation [mm]";
   view.diverging = true;
   view.range = {{-range, range}};
-  view.direction = Vec3(0, -0.02, 1);
+  view.direction = Vec3(0, 0, 1);
   view.up = Vec3(0, 1, 0);
-  view.layers = {std::move(cloth), std::move(frame)};
-  context.draw("deviation", fmt::format("Deviation of the cloth from the paraboloid about its mean, RMS {:.3f} mm", 1e3 * error.rms), view);
+  view.layers = {std::move(outside), std::move(cloth), std::move(rim)};
+  if (error.radius > 0) view.layers.push_back(circle_on(*context.surface, error.radius));
+  context.draw("deviation",
+               fmt::format("Deviation of the cloth from the paraboloid about its mean, RMS {:.3f} mm",
+                           1e3 * error.rms),
+               view);
+}
+
+/// Cables coloured by tension before a grey frame.
+output::View tension_view(Context& context, const model::Response& response, const std::vector<int>& cables,
+                          std::vector<std::array<int, 2>> frame_lines) {
+  const auto& model = context.system().model();
+  output::ViewLayer layer, frame;
+  layer.points = frame.points = model::positions(model, context.system().state());
+  double least = 1e300, largest = 0, sum = 0;
+  for (const int i : cables) {
+    const double tension = response.cables[i].tension;
+    layer.lines.push_back(model.cables[i].nodes);
+    layer.cell_scalars.push_back(tension);
+    least = std::min(least, tension);
+    largest = std::max(largest, tension);
+    sum += tension;
+  }
+  frame.lines = std::move(frame_lines);
+  frame.line_width = 2;
+  output::View view;
+  view.subtitle = fmt::format("least {:.3g} N, mean {:.4g} N, largest {:.4g} N", least,
+                              sum / static_cast<double>(cables.size()), largest);
+  view.scalar_title = "tension [N]";
+  view.layers = {std::move(frame), std::move(layer)};
+  return view;
 }
 
 void draw_tensions(Context& context, const model::Response& response) {
   const auto& model = context.system().model();
-  output::ViewLayer cables, frame;
-  cables.points = frame.points = model::positions(model, context.system().state());
-  for (std::size_t i = 0; i < model.cables.size(); ++i) {
-    cables.lines.push_back(model.cables[i].nodes);
-    cables.cell_scalars.push_back(response.cables[i].tension);
-  }
-  for (const auto& beam : model.beams) frame.lines.push_back(beam.nodes);
-  frame.line_width = 3;
-  cables.line_width = 1.6;
-  output::View view;
-  view.title = "Cable tensions";
-  view.scalar_title = "tension [N]";
-  view.layers = {std::move(cables), std::move(frame)};
+  std::vector<int> all(model.cables.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<std::array<int, 2>> frame;
+  for (const auto& beam : model.beams) frame.push_back(beam.nodes);
+  auto view = tension_view(context, response, all, frame);
+  view.title = "Tensions of all cables";
   context.draw("tensions", "Tensions of all cables; the frame in grey", view);
+  if (!context.surface) return;
+  view = tension_view(context, response, model.select("front_net").cables, beam_lines(model, "front_rim"));
+  view.title = "Tensions of the front net";
+  view.direction = Vec3(0, 0, 1);
+  view.up = Vec3(0, 1, 0);
+  view.layers.back().line_width = 3;
+  context.draw("net_tensions", "Tensions of the front net, seen along the axis", view);
 }
 
 }  // namespace

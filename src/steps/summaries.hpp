@@ -12,8 +12,8 @@
 
 namespace tautline::steps {
 
-/// A residual as results report it: what lies below `floor`, the level of rounding, reads as `floor`, so that figures do not
-/// depend on the number of ranks.
+/// A residual as results report it: what lies below `floor`, the level of rounding, reads as `floor`, so that
+/// figures do not depend on the number of ranks.
 double above_rounding(double value, double floor);
 
 /// A figure of which only the size matters, to three digits.

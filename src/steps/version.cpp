@@ -2,6 +2,8 @@
 
 namespace tautline::steps {
 
-const char* version() { return TAUTLINE_VERSION; }
+const char* version() {
+  return TAUTLINE_VERSION;
+}
 
 }  // namespace tautline::steps

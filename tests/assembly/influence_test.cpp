@@ -20,7 +20,9 @@ model::Model tied_node() {
   return model;
 }
 
-Boundary held_ends() { return {{support({0, 2, 3})}, {}, Vec3::Zero()}; }
+Boundary held_ends() {
+  return {{support({0, 2, 3})}, {}, Vec3::Zero()};
+}
 
 // Against the whole nonlinear solve for lengths changed by +-h: central differences leave an error of h^2.
 TEST(LengthInfluence, IsTheDerivativeOfTheEquilibriumByALength) {

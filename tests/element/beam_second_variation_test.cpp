@@ -34,11 +34,13 @@ TEST(BeamSecondVariation, IsTheQuadraticFormOfTheTangent) {
   Vec<12> v;
   for (int i = 0; i < 12; ++i) v[i] = std::sin(1.0 + 2.1 * i);
   const double expected = v.dot(response.tangent * v);
-  EXPECT_NEAR(beam_second_variation(stiff(), geometry(), bent(), v), expected, 1e-12 * response.tangent.norm() * 12);
+  EXPECT_NEAR(beam_second_variation(stiff(), geometry(), bent(), v), expected,
+              1e-12 * response.tangent.norm() * 12);
 }
 
-// A rigid motion of an unstressed beam stores nothing. K has entries of 1e9 N/m, whose rounding leaves 1e-7 J; from relative
-// motions only the moments are left that the frame's rounding makes, 4 E I / L * 2e-16 = 2e-10 N m.
+// A rigid motion of an unstressed beam stores nothing. K has entries of 1e9 N/m, whose rounding leaves 1e-7
+// J; from relative motions only the moments are left that the frame's rounding makes, 4 E I / L * 2e-16 =
+// 2e-10 N m.
 TEST(BeamSecondVariation, OfARigidMotionIsNothingToRounding) {
   const auto g = geometry();
   const Vec3 spin(0.3, -0.7, 0.5), shift(1, 2, -1);

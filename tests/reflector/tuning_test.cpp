@@ -27,7 +27,8 @@ TEST(BoxMinimum, StaysOnABoundAndSolvesTheRest) {
   EXPECT_NEAR(x[1], 1.75, 1e-14);
 }
 
-// At the minimum every component is either free with no gradient, or on a bound that the gradient pushes against.
+// At the minimum every component is either free with no gradient, or on a bound that the gradient pushes
+// against.
 TEST(BoxMinimum, MeetsTheOptimalityConditionsOfALargeProblem) {
   const int n = 60;
   srand(1);
@@ -67,7 +68,8 @@ class OwnTies : public testing::Test {
   void SetUp() override {
     sample_.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0)};
     for (std::size_t i = 0; i < 4; ++i)
-      sample_.positions[i].z() = surface_.height(sample_.positions[i].x(), sample_.positions[i].y()) + error_[i];
+      sample_.positions[i].z() =
+          surface_.height(sample_.positions[i].x(), sample_.positions[i].y()) + error_[i];
     sample_.surface_nodes = {0, 1, 2, 3};
     sample_.triangles = {{0, 1, 2}, {1, 3, 2}};
     influence_.nodes = sample_.surface_nodes;
@@ -88,7 +90,8 @@ class OwnTies : public testing::Test {
   TuningOptions options_;
 };
 
-// With every node free to move alone, all deviations become equal: the changes differ from -error by a constant.
+// With every node free to move alone, all deviations become equal: the changes differ from -error by a
+// constant.
 TEST_F(OwnTies, SensitivityMakesTheDeviationsEqual) {
   options_.regularisation = 1e-9;  // the common shift is free and must be tied down
   const VecX change = sensitivity_change(surface_, sample_, influence_, options_);

@@ -34,7 +34,9 @@ TEST(Extrapolation, RefusesValuesThatTurnBack) {
   EXPECT_FALSE(extrapolate_three({0.4, 0.2, 0.1}, {1.0, 0.8, 0.9}));
 }
 
-TEST(Extrapolation, NeedsThreePoints) { EXPECT_FALSE(extrapolate_three({0.4, 0.2}, {1.0, 0.8})); }
+TEST(Extrapolation, NeedsThreePoints) {
+  EXPECT_FALSE(extrapolate_three({0.4, 0.2}, {1.0, 0.8}));
+}
 
 }  // namespace
 }  // namespace tautline::steps

@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// Newton's method for the equilibrium of anything that has a residual and a tangent. Theory: docs/theory/newton.md
+/// Newton's method for the equilibrium of anything that has a residual and a tangent. Theory:
+/// docs/theory/newton.md
 
 #include <functional>
 #include <string>
@@ -15,8 +16,9 @@ namespace tautline::analysis {
 
 /// Norms of like with like: forces beside forces, moments beside moments.
 struct ResidualNorms {
-  double force = 0, moment = 0;                      ///< out-of-balance [N], [N m]
-  double reference_force = 0, reference_moment = 0;  ///< what they are compared with: the sum of |element forces| node by node
+  double force = 0, moment = 0;  ///< out-of-balance [N], [N m]
+  double reference_force = 0,
+         reference_moment = 0;  ///< what they are compared with: the sum of |element forces| node by node
 };
 
 /// What Newton solves: gradient(x) = 0. The unknowns are increments from the point where the solve began;
@@ -40,8 +42,8 @@ class NonlinearProblem {
 
 struct NewtonIteration {
   ResidualNorms norms;
-  double increment = 0;   ///< relative to the structure's size [-]
-  double step = 1;        ///< line-search factor
+  double increment = 0;  ///< relative to the structure's size [-]
+  double step = 1;       ///< line-search factor
 };
 
 enum class NewtonStatus { converged, too_many_iterations, diverged, singular };

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// Every stage is a path: from boundary state A (lambda = 0) to B (lambda = 1). Full step first, halved on failure, doubled on
-/// success. Theory: docs/theory/stages.md
+/// Every stage is a path: from boundary state A (lambda = 0) to B (lambda = 1). Full step first, halved on
+/// failure, doubled on success. Theory: docs/theory/stages.md
 
 #include <functional>
 #include <string>
@@ -15,8 +15,8 @@ namespace tautline::analysis {
 class PathProblem : public NonlinearProblem {
  public:
   virtual void set_lambda(double lambda) = 0;
-  virtual void commit() = 0;    ///< keeps the present point
-  virtual void roll_back() = 0; ///< returns to the point kept last
+  virtual void commit() = 0;     ///< keeps the present point
+  virtual void roll_back() = 0;  ///< returns to the point kept last
 };
 
 struct PathPoint {
@@ -30,16 +30,18 @@ struct PathSummary {
   std::vector<PathPoint> points;  ///< converged ones, in order
   bool singular = false;          ///< the last failed attempt met a singular tangent
   int failed_attempts = 0;
-  int newton_iterations = 0;      ///< of all attempts
-  la::Inertia inertia;            ///< of the tangent at the end
+  int newton_iterations = 0;  ///< of all attempts
+  la::Inertia inertia;        ///< of the tangent at the end
   double lambda() const { return points.empty() ? 0 : points.back().lambda; }
 };
 
 /// Called with (lambda aimed at, iteration, relative residual).
 using PathCallback = std::function<void(double, int, double)>;
 
-/// @brief Follows the path to lambda = 1 or as far as it goes; the problem is left at the last converged point. Collective.
-/// @throws Interrupted between iterations if the user asked for it; the problem is then at its last converged point
+/// @brief Follows the path to lambda = 1 or as far as it goes; the problem is left at the last converged
+/// point. Collective.
+/// @throws Interrupted between iterations if the user asked for it; the problem is then at its last converged
+/// point
 PathSummary follow_path(PathProblem& problem, Workspace& workspace, const NewtonOptions& options,
                         const PathCallback& callback = {});
 

@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// The model as a nonlinear problem: gather -> kernel -> scatter on every rank's share of the elements. Owns the parallel layout.
+/// The model as a nonlinear problem: gather -> kernel -> scatter on every rank's share of the elements. Owns
+/// the parallel layout.
 
 #include <optional>
 #include <span>
@@ -31,9 +32,10 @@ struct OutOfBalance {
 
 /// @brief A finite-element model in motion: model, state, boundary.
 ///
-/// The model is held whole on every rank; elements, unknowns and factors are dealt out. A stage begins with `begin_stage`: forces that
-/// are out of balance there (reactions of released supports, loads not yet balanced, prestress) are kept as external
-/// forces and ramped out as lambda goes from 0 to 1; unstressed lengths asked for by `set_target_strains` are ramped in.
+/// The model is held whole on every rank; elements, unknowns and factors are dealt out. A stage begins with
+/// `begin_stage`: forces that are out of balance there (reactions of released supports, loads not yet
+/// balanced, prestress) are kept as external forces and ramped out as lambda goes from 0 to 1; unstressed
+/// lengths asked for by `set_target_strains` are ramped in.
 class System : public analysis::PathProblem {
  public:
   explicit System(model::Model model);
@@ -44,7 +46,8 @@ class System : public analysis::PathProblem {
   int n_dofs() const noexcept { return 3 * map_.layout.total; }
   double assembly_seconds() const noexcept { return assembly_seconds_; }
 
-  /// Moves to `state`, which must belong to this model; unstressed lengths stay as they are, or become those of `strains`.
+  /// Moves to `state`, which must belong to this model; unstressed lengths stay as they are, or become those
+  /// of `strains`.
   void set_state(const model::State& state);
   void set_state(const model::State& state, const std::vector<double>& strains);
   /// Present initial strain of each cable.
@@ -69,8 +72,8 @@ class System : public analysis::PathProblem {
   /// Mass matrix of the free unknowns in the present state; rows and columns of held ones are zero.
   la::SymmetricMatrix mass() const { return assemble_mass(held_); }
   la::SymmetricMatrix new_matrix() const { return {map_.layout, map_.pattern}; }
-  /// x^T K x in the present state, summed element by element from relative motions so that it keeps its digits where a stiff frame
-  /// moves almost rigidly. Collective.
+  /// x^T K x in the present state, summed element by element from relative motions so that it keeps its
+  /// digits where a stiff frame moves almost rigidly. Collective.
   double second_variation(const la::Vector& x) const;
   /// Whether an unknown is held: index 3 * block + component.
   const std::vector<bool>& held() const noexcept { return held_; }
@@ -89,10 +92,11 @@ class System : public analysis::PathProblem {
   struct Share {
     std::vector<int> cables, beams, membranes;  ///< those that touch a node of this rank
   };
-  /// Internal forces of the elements that touch this rank's nodes added into `force`, and the sums of their magnitudes into
-  /// `magnitude`; complete in the rank's own entries. Elements come in the model's order, so that every entry is the same number
-  /// however the nodes are dealt out.
-  void add_internal(const model::State& state, std::vector<double>& force, std::vector<double>& magnitude) const;
+  /// Internal forces of the elements that touch this rank's nodes added into `force`, and the sums of their
+  /// magnitudes into `magnitude`; complete in the rank's own entries. Elements come in the model's order, so
+  /// that every entry is the same number however the nodes are dealt out.
+  void add_internal(const model::State& state, std::vector<double>& force,
+                    std::vector<double>& magnitude) const;
   model::State moved(const std::vector<double>& x) const;
   std::vector<double> dead_loads(const Boundary& boundary) const;
   std::vector<double> internal_forces() const;
@@ -105,14 +109,14 @@ class System : public analysis::PathProblem {
   DofMap map_;
   Share share_;
   model::State state_, committed_;
-  std::vector<double> origin_;               // unknowns at which `state_` was accepted
+  std::vector<double> origin_;  // unknowns at which `state_` was accepted
   std::vector<bool> held_;
   std::vector<double> start_force_, end_force_;  // external forces at lambda = 0 and 1
   std::vector<double> start_strain_, end_strain_;
   std::optional<std::vector<double>> wanted_strain_;
   double lambda_ = 1, size_ = 1;
   double support_stiffness_ = 1;
-  mutable std::vector<double> magnitude_;    // of the last residual, all unknowns
+  mutable std::vector<double> magnitude_;  // of the last residual, all unknowns
   mutable double assembly_seconds_ = 0;
 };
 

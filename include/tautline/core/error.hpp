@@ -19,7 +19,8 @@ enum class ExitCode : int {
   interrupted = 130
 };
 
-/// A place in a text file; lines and columns count from 1, columns in characters. Line 0 means "no place known".
+/// A place in a text file; lines and columns count from 1, columns in characters. Line 0 means "no place
+/// known".
 struct SourceLocation {
   std::string file;
   int line = 0;
@@ -37,7 +38,8 @@ struct Diagnostic {
   std::string suggestion;   ///< did-you-mean or remedy; may be empty
 };
 
-/// Text of a diagnostic as a user sees it: place, message, source line, caret, context, expectation, suggestion.
+/// Text of a diagnostic as a user sees it: place, message, source line, caret, context, expectation,
+/// suggestion.
 std::string to_string(const Diagnostic& diagnostic);
 
 /// The file is wrong. Holds every complaint found, in order of appearance. Exit code 2.
@@ -56,7 +58,8 @@ class ModelError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The analysis could not reach a state. Raised by steps only, after the last good state was saved. Exit code 4.
+/// The analysis could not reach a state. Raised by steps only, after the last good state was saved. Exit
+/// code 4.
 class ConvergenceError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -13,7 +13,8 @@ namespace tautline {
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 /// "a, b, c" ; at most `most` names, then "... (N in all)".
-std::string join(const std::vector<std::string>& words, std::string_view separator = ", ", std::size_t most = 20);
+std::string join(const std::vector<std::string>& words, std::string_view separator = ", ",
+                 std::size_t most = 20);
 
 /// Number of characters (UTF-8 code points) in the first `bytes` bytes of `text`.
 int characters(std::string_view text, std::size_t bytes);

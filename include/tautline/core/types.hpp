@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// Short names for the vectors and matrices used everywhere. SI units; columns of a coordinate matrix are nodes.
+/// Short names for the vectors and matrices used everywhere. SI units; columns of a coordinate matrix are
+/// nodes.
 
 #include <vector>
 

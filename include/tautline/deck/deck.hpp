@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// The deck: the file a user writes, read strictly into option structs. docs/deck/ is generated from the same table.
+/// The deck: the file a user writes, read strictly into option structs. docs/deck/ is generated from the same
+/// table.
 
 #include <map>
 #include <optional>
@@ -20,7 +21,8 @@ struct Deck {
   std::string sha256;  ///< of the file's bytes, lower-case hex
   std::string title;
   std::map<std::string, std::string> parameters;  ///< values in force, after --set
-  std::optional<reflector::PerimeterTrussOptions> reflector;  ///< exactly one of reflector and model is present
+  std::optional<reflector::PerimeterTrussOptions>
+      reflector;  ///< exactly one of reflector and model is present
   std::optional<model::ModelOptions> model;
   std::map<std::string, model::MaterialOptions> materials;
   std::map<std::string, model::SectionOptions> sections;
@@ -33,12 +35,14 @@ struct Deck {
 };
 
 /// @brief Reads and checks a deck: syntax, keys, types, units, ranges, cross references between its blocks.
-/// @param overrides  "path.to.key=value" as given by --set; `parameters.s=8` or any scalar key (`reflector.gap=0.05`, `steps.1.subdivisions=8`)
+/// @param overrides  "path.to.key=value" as given by --set; `parameters.s=8` or any scalar key
+/// (`reflector.gap=0.05`, `steps.1.subdivisions=8`)
 /// @throws DeckError with every complaint at once (at most 20 are shown)
 Deck read_deck(const std::string& path, const std::vector<std::string>& overrides = {});
 
 /// The same from text; `name` stands for the file in messages.
-Deck parse_deck(const std::string& text, const std::string& name, const std::vector<std::string>& overrides = {});
+Deck parse_deck(const std::string& text, const std::string& name,
+                const std::vector<std::string>& overrides = {});
 
 /// What a key means: type, unit, default, range, sentence. Empty key: the whole table of contents.
 /// @throws DeckError with a suggestion for an unknown key

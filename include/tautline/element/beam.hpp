@@ -72,8 +72,8 @@ BeamResponse evaluate_beam(const BeamSection& section, const BeamGeometry& geome
 ///
 /// Formed from the relative motion of the ends, not from K: where a stiff beam moves almost rigidly, K's
 /// entries are large, cancel, and leave their rounding.
-double beam_second_variation(const BeamSection& section, const BeamGeometry& geometry, const BeamMotion& motion,
-                             const Vec<12>& velocity);
+double beam_second_variation(const BeamSection& section, const BeamGeometry& geometry,
+                             const BeamMotion& motion, const Vec<12>& velocity);
 
 /// @brief Consistent mass matrix (Euler-Bernoulli with rotary inertia) in the global frame [kg, kg m, kg
 /// m^2].

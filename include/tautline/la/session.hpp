@@ -26,7 +26,8 @@ double sum_over_ranks(double value);
 double max_over_ranks(double value);
 /// Whether it is true anywhere: how ranks agree before they throw. Collective.
 bool true_on_any_rank(bool value);
-/// Does `action` on rank 0 only; if it throws there, every rank throws a LibraryError with the same text. Collective.
+/// Does `action` on rank 0 only; if it throws there, every rank throws a LibraryError with the same text.
+/// Collective.
 void on_root(const std::function<void()>& action);
 /// Ends all ranks at once with an exit code: the last resort when one rank alone has failed.
 [[noreturn]] void abort_all_ranks(int exit_code);

@@ -22,15 +22,15 @@ struct SnesCallbacks {
   std::function<void(const Vector& x)> accept;
   /// After each iteration (0 = the start): |increment| is 0 at the start.
   std::function<Verdict(int iteration, const Vector& f, const Vector& increment)> verdict;
-  /// Factor for the full Newton step, in (0, 1]: given the directional derivatives it may ask for more of them.
-  /// slope(t) = -f(x + t dx) . dx, evaluated anew at each call.
+  /// Factor for the full Newton step, in (0, 1]: given the directional derivatives it may ask for more of
+  /// them. slope(t) = -f(x + t dx) . dx, evaluated anew at each call.
   std::function<double(const std::function<double(double)>& slope, double slope_0)> line_search;
 };
 
 enum class SnesOutcome { converged, diverged, singular, not_a_number };
 
 /// Runs SNES from x; x holds the last point on return. Exceptions of the callbacks pass through. Collective.
-SnesOutcome run_snes(const SnesCallbacks& callbacks, SymmetricMatrix& tangent, DirectSolver& solver, Vector& x,
-                     int max_iterations);
+SnesOutcome run_snes(const SnesCallbacks& callbacks, SymmetricMatrix& tangent, DirectSolver& solver,
+                     Vector& x, int max_iterations);
 
 }  // namespace tautline::la

@@ -11,7 +11,8 @@ struct _p_Mat;
 
 namespace tautline::la {
 
-/// Number of blocks in each owned block row of the upper triangle: in the rank's own columns, and in later ranks' columns.
+/// Number of blocks in each owned block row of the upper triangle: in the rank's own columns, and in later
+/// ranks' columns.
 struct BlockPattern {
   std::vector<int> diagonal, off_diagonal;
 };
@@ -27,11 +28,12 @@ class SymmetricMatrix {
 
   _p_Mat* handle() const noexcept { return mat_; }
   void set_zero();
-  /// Adds the rows of a dense symmetric element matrix that this rank owns; `values` is 3n x 3n for n = blocks.size(). Every rank
-  /// that owns one of the blocks must add the element.
+  /// Adds the rows of a dense symmetric element matrix that this rank owns; `values` is 3n x 3n for n =
+  /// blocks.size(). Every rank that owns one of the blocks must add the element.
   void add(std::span<const int> blocks, const double* values);
   void finish();  ///< collective; after the last add
-  /// A x in extended precision, whole on every rank: for results that are small differences of large terms. Collective.
+  /// A x in extended precision, whole on every rank: for results that are small differences of large terms.
+  /// Collective.
   std::vector<long double> multiply_extended(const std::vector<double>& x) const;
   /// y = A x
   void multiply(const Vector& x, Vector& y) const;

@@ -19,7 +19,7 @@ struct BlockLayout {
 class Vector {
  public:
   explicit Vector(const BlockLayout& layout);
-  explicit Vector(_p_Vec* borrowed);     ///< a view that does not own
+  explicit Vector(_p_Vec* borrowed);  ///< a view that does not own
   static Vector like(const Vector& other);
   static Vector adopt(_p_Vec* handle);  ///< takes ownership
   ~Vector();

@@ -6,7 +6,8 @@
 
 namespace tautline::mesh {
 
-/// Compressed adjacency: neighbours of vertex i are neighbour[start[i]] ... neighbour[start[i + 1] - 1]; symmetric, no loops.
+/// Compressed adjacency: neighbours of vertex i are neighbour[start[i]] ... neighbour[start[i + 1] - 1];
+/// symmetric, no loops.
 struct Graph {
   std::vector<int> start, neighbour;
   std::vector<int> weight;  ///< work of each vertex

@@ -46,7 +46,8 @@ inline Mat<3, 3> membrane_nodes(const Model& model, const Membrane& membrane) {
 template <std::size_t N>
 Vec<3 * static_cast<int>(N)> gather(const State& state, const std::array<int, N>& nodes) {
   Vec<3 * static_cast<int>(N)> u;
-  for (std::size_t i = 0; i < N; ++i) u.template segment<3>(3 * static_cast<int>(i)) = state.displacement[nodes[i]];
+  for (std::size_t i = 0; i < N; ++i)
+    u.template segment<3>(3 * static_cast<int>(i)) = state.displacement[nodes[i]];
   return u;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// What is analysed: nodes, elements in named groups, supports and loads. Plain data, the same on every rank; the
-/// structure as described and its finite-element mesh are both a Model (the second by model::subdivide).
+/// What is analysed: nodes, elements in named groups, supports and loads. Plain data, the same on every rank;
+/// the structure as described and its finite-element mesh are both a Model (the second by model::subdivide).
 
 #include <array>
 #include <map>
@@ -21,15 +21,16 @@ struct CableSection {
 
 enum class ElementKind { cable, beam, membrane };
 
-/// Elements of one kind with one section. Every element belongs to exactly one group, by index into Model::groups.
+/// Elements of one kind with one section. Every element belongs to exactly one group, by index into
+/// Model::groups.
 struct Group {
   std::string name;
   ElementKind kind = ElementKind::cable;
-  CableSection cable;                   ///< valid where kind == cable
-  element::BeamSection beam;            ///< valid where kind == beam
-  element::MembraneSection membrane;    ///< valid where kind == membrane
-  Vec3 orientation = Vec3::Zero();      ///< beams: local axis 3 lies in the plane of the beam and this vector
-  double target_tension = 0;            ///< cables: tension asked of form-finding [N]; 0 if none
+  CableSection cable;                 ///< valid where kind == cable
+  element::BeamSection beam;          ///< valid where kind == beam
+  element::MembraneSection membrane;  ///< valid where kind == membrane
+  Vec3 orientation = Vec3::Zero();    ///< beams: local axis 3 lies in the plane of the beam and this vector
+  double target_tension = 0;          ///< cables: tension asked of form-finding [N]; 0 if none
 };
 
 struct Cable {
@@ -66,7 +67,8 @@ struct Support {
   std::array<bool, 6> fixed{true, true, true, true, true, true};
 };
 
-/// A dead nodal load at full load factor. It stays on the nodes of the structure as described, whatever the mesh.
+/// A dead nodal load at full load factor. It stays on the nodes of the structure as described, whatever the
+/// mesh.
 struct NodalLoad {
   std::string name;
   std::vector<int> nodes;
@@ -104,8 +106,9 @@ struct Model {
 double total_mass(const Model& model);
 std::map<std::string, double> mass_by_group(const Model& model);
 
-/// @brief Checks that the structure can exist: node indices, zero-length and zero-area elements, coincident and
-/// unconnected nodes, positive stiffnesses, something supported. @throws ModelError that lists every fault by name.
+/// @brief Checks that the structure can exist: node indices, zero-length and zero-area elements, coincident
+/// and unconnected nodes, positive stiffnesses, something supported. @throws ModelError that lists every
+/// fault by name.
 void validate(const Model& model);
 
 }  // namespace tautline::model

@@ -38,8 +38,8 @@ struct GroupSummary {
   double tension_min = 0, tension_max = 0, tension_mean = 0;
   double tension_rms_from_target = 0;  ///< Belov eq. 4.13; target = Group::target_tension
   bool has_target = false;
-  double axial_min = 0, axial_max = 0, moment_max = 0;   ///< beams
-  double principal_min = 0, principal_max = 0;           ///< membranes [N/m]
+  double axial_min = 0, axial_max = 0, moment_max = 0;  ///< beams
+  double principal_min = 0, principal_max = 0;          ///< membranes [N/m]
 };
 
 std::map<std::string, GroupSummary> summarise_groups(const Model& model, const Response& response);

@@ -1,7 +1,7 @@
 #pragma once
 /// @file
-/// Where the structure is: displacements and rotations from the reference configuration. Copy to commit, assign to
-/// roll back.
+/// Where the structure is: displacements and rotations from the reference configuration. Copy to commit,
+/// assign to roll back.
 
 #include <vector>
 

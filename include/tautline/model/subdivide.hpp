@@ -15,16 +15,17 @@ enum class FacetPattern {
 };
 
 struct SubdivideOptions {
-  int subdivisions = 1;                      ///< parts of each facet side, of the cables on it and of the beams
+  int subdivisions = 1;  ///< parts of each facet side, of the cables on it and of the beams
   FacetPattern pattern = FacetPattern::structured;
   std::map<std::string, int> group_subdivisions;  ///< override for a cable or beam group
 };
 
-/// @brief Splits facets, the cables and beams along their sides, and all other beams into parts that share nodes.
+/// @brief Splits facets, the cables and beams along their sides, and all other beams into parts that share
+/// nodes.
 ///
-/// Cables that are no facet side stay whole. The unstressed length of a cable is shared out equally. Selections and supports
-/// follow their elements; a support on explicit nodes stays on those nodes.
-/// `mapped` needs an even number of subdivisions. @throws ModelError for subdivisions < 1 or conflicting overrides.
+/// Cables that are no facet side stay whole. The unstressed length of a cable is shared out equally.
+/// Selections and supports follow their elements; a support on explicit nodes stays on those nodes. `mapped`
+/// needs an even number of subdivisions. @throws ModelError for subdivisions < 1 or conflicting overrides.
 Model subdivide(const Model& structure, const SubdivideOptions& options);
 
 }  // namespace tautline::model

@@ -17,16 +17,17 @@ enum class TuningObjective {
 struct TuningOptions {
   TuningMethod method = TuningMethod::rule;
   TuningObjective objective = TuningObjective::area;  ///< sensitivity only
-  std::string ties = "ties";    ///< cable group to be tuned
+  std::string ties = "ties";                          ///< cable group to be tuned
   int max_passes = 12;
-  double tolerance = 0.002;     ///< stop when the RMS changes by less than this part of itself [-]
+  double tolerance = 0.002;  ///< stop when the RMS changes by less than this part of itself [-]
   /// Sensitivity: lower bound on tie tension [N]; NaN: half of the least tie tension when the tuning begins.
   double tension_min = std::numeric_limits<double>::quiet_NaN();
   double tension_max = std::numeric_limits<double>::infinity();  ///< sensitivity: upper bound [N]
-  /// Sensitivity: weight of the squares of tie-tension changes beside the surface error, relative to the mean influence of a tie
-  /// on it [-]. Less reaches a smaller error by larger and less even tensions.
+  /// Sensitivity: weight of the squares of tie-tension changes beside the surface error, relative to the mean
+  /// influence of a tie on it [-]. Less reaches a smaller error by larger and less even tensions.
   double regularisation = 0.01;
-  double max_change = std::numeric_limits<double>::infinity();   ///< largest change of an unstressed length in one pass [m]
+  double max_change =
+      std::numeric_limits<double>::infinity();  ///< largest change of an unstressed length in one pass [m]
 };
 
 }  // namespace tautline::reflector

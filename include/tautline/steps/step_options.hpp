@@ -15,12 +15,18 @@
 
 namespace tautline::steps {
 
-/// `kind: form_finding`. On a reflector: `net` is bound to the paraboloid, mirrored to `mirror`, `ties` get the vertical
-/// residual. On a plain model: `net` in space, fixed where supports and other elements' nodes are.
+/// `kind: form_finding`. On a reflector: `net` is bound to the paraboloid, mirrored to `mirror`, `ties` get
+/// the vertical residual. On a plain model: `net` in space, fixed where supports and other elements' nodes
+/// are.
 struct FormFindingOptions {
-  std::vector<std::string> net;    ///< cable groups; empty: front_net of a reflector, all cable groups otherwise
-  std::vector<std::string> fixed;  ///< groups or selections whose nodes are fixed besides the supports (plain models)
-  enum class Method { tension, linear } method = Method::tension;  ///< prescribed tensions, or given force densities
+  std::vector<std::string>
+      net;  ///< cable groups; empty: front_net of a reflector, all cable groups otherwise
+  std::vector<std::string>
+      fixed;  ///< groups or selections whose nodes are fixed besides the supports (plain models)
+  enum class Method {
+    tension,
+    linear
+  } method = Method::tension;  ///< prescribed tensions, or given force densities
   formfinding::ForceDensityOptions solver;
 };
 
@@ -53,7 +59,8 @@ struct ModalOptions {
   int modes = 6;
 };
 
-using AnyStep = std::variant<FormFindingOptions, MeshOptions, EquilibriumOptions, TuningStepOptions, ModalOptions>;
+using AnyStep =
+    std::variant<FormFindingOptions, MeshOptions, EquilibriumOptions, TuningStepOptions, ModalOptions>;
 
 struct Step {
   std::string kind;  ///< as written in the deck
