@@ -79,6 +79,7 @@ std::string contents() {
   for (const auto& topic : topics) {
     names.push_back(topic.path);
     names.push_back(words(topic.path).back());
+    names.push_back(words(topic.path).front() + "." + words(topic.path).back());
   }
   Diagnostic diagnostic;
   diagnostic.where.file = "explain";

@@ -66,7 +66,7 @@ Block make_perimeter_truss() {
   b.key("gap", &Options::gap).in("m").at_least(0).says("Extra distance between front and rear net.");
   b.key("rim_height", &Options::rim_height)
       .in("m")
-      .by_default("mean height of the surface over the rim")
+      .by_default("highest point of the surface over the rim")
       .says("Height z of the front rim's plane.");
   b.key("struts", &Options::struts)
       .at_least(3)

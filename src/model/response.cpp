@@ -50,6 +50,22 @@ GroupSummary start(const Group& group) {
   return summary;
 }
 
+/// Forces below 1e-12 of the largest in the structure are what rounding leaves of zero, and are reported as zero.
+void clear_rounding(std::vector<GroupSummary>& summaries) {
+  double largest = 0;
+  const auto each = [](GroupSummary& s, const auto& action) {
+    for (double* force : {&s.tension_min, &s.tension_max, &s.axial_min, &s.axial_max, &s.moment_max}) action(*force);
+  };
+  for (auto& summary : summaries)
+    each(summary, [&](double& force) {
+      if (std::isfinite(force)) largest = std::max(largest, std::abs(force));
+    });
+  for (auto& summary : summaries)
+    each(summary, [&](double& force) {
+      if (std::abs(force) < 1e-12 * largest) force = 0;
+    });
+}
+
 void finish(GroupSummary& summary) {
   if (summary.count == 0) {
     summary.tension_min = summary.tension_max = summary.axial_min = summary.axial_max = 0;
@@ -90,6 +106,7 @@ std::map<std::string, GroupSummary> summarise_groups(const Model& model, const R
     s.principal_min = std::min(s.principal_min, response.membranes[i].principal_cauchy[1]);
     s.principal_max = std::max(s.principal_max, response.membranes[i].principal_cauchy[0]);
   }
+  clear_rounding(summaries);
   std::map<std::string, GroupSummary> result;
   for (std::size_t i = 0; i < summaries.size(); ++i) {
     finish(summaries[i]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <tautline/core/error.hpp>
@@ -120,9 +121,9 @@ void Builder::add_nodes() {
       model_.nodes.emplace_back(x, y, surface_.height(x, y));
     }
   }
-  double rim_height = 0;
+  double rim_height = -std::numeric_limits<double>::infinity();
   for (int j = 0; j < lattice_.n_rim(); ++j)
-    rim_height += model_.nodes[lattice_.rim(j)].z() / lattice_.n_rim();
+    rim_height = std::max(rim_height, model_.nodes[lattice_.rim(j)].z());
   if (!std::isnan(options_.rim_height)) rim_height = options_.rim_height;
   for (int j = 0; j < lattice_.n_rim(); ++j) model_.nodes[lattice_.rim(j)].z() = rim_height;
 

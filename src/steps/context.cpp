@@ -22,6 +22,7 @@ Context::Context(const deck::Deck& the_deck, std::string directory, bool picture
       pictures_(pictures),
       root_(la::rank() == 0),
       fields_(directory_, la::rank(), la::size()) {
+  model::validate(structure);
   if (deck.reflector) surface = reflector::make_paraboloid(*deck.reflector);
 }
 

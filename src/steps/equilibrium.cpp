@@ -44,7 +44,7 @@ Json run_stage(Context& context, const StageOptions& stage, const assembly::Boun
   const auto path = follow(context, stage.name);
   watch.reset();
   reached = path.reached;
-  if (path.singular && path.points.empty())
+  if ((path.singular && path.points.empty()) || path.inertia.null > 0)
     if (const auto mechanism = assembly::find_mechanism(system, context.workspace()))
       throw ModelError(fmt::format("stage \"{}\": {}", stage.name, mechanism->text));
   return {{"name", stage.name},

@@ -129,6 +129,18 @@ void refresh_other_groups(Context& context, const std::vector<std::string>& foun
   }
 }
 
+/// What the branches pull at each node with, sum of q (x_j - x_i) [N].
+Points nodal_forces(const formfinding::Net& net, const formfinding::ForceDensityResult& found) {
+  Points forces(net.nodes.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < net.branches.size(); ++i) {
+    const auto& [a, b] = net.branches[i];
+    const Vec3 pull = found.force_density[static_cast<int>(i)] * (found.nodes[b] - found.nodes[a]);
+    forces[a] += pull;
+    forces[b] -= pull;
+  }
+  return forces;
+}
+
 formfinding::ForceDensityResult solve_linear(const model::Model& structure, const Extract& extract,
                                              const formfinding::Surface* surface) {
   formfinding::ForceDensityResult result;
@@ -148,6 +160,14 @@ formfinding::ForceDensityResult solve_linear(const model::Model& structure, cons
   result.converged = true;
   result.iterations = 1;
   result.reason = "one linear solve";
+  result.residual_z = VecX::Zero(static_cast<Eigen::Index>(extract.nodes.size()));
+  const auto forces = nodal_forces(extract.net, result);
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    result.residual_z[static_cast<int>(i)] = -forces[i].z();
+    if (extract.net.fixed[i]) continue;
+    const double left = surface != nullptr ? forces[i].head<2>().norm() : forces[i].norm();
+    result.out_of_balance = std::max(result.out_of_balance, left);
+  }
   return result;
 }
 

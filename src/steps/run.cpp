@@ -116,8 +116,8 @@ void finish(Context& context, const RunSettings& settings, Clock::time_point sta
 
 ExitCode run(const deck::Deck& deck, const RunSettings& settings, Progress& progress) {
   const auto start = Clock::now();
-  la::on_root([&] { output::prepare_directory(settings.directory); });
   Context context(deck, settings.directory, settings.pictures && deck.output.pictures, progress);
+  la::on_root([&] { output::prepare_directory(settings.directory); });
   context.results = start_results(deck);
   context.note_model();
   ExitCode code = ExitCode::done;
@@ -135,6 +135,7 @@ ExitCode run(const deck::Deck& deck, const RunSettings& settings, Progress& prog
     context.results["reason"] = error.what();
     code = ExitCode::interrupted;
   } catch (const std::exception& error) {
+    context.results["status"] = "not_converged";
     context.results["reason"] = error.what();
     context.save();
     throw;
