@@ -50,11 +50,13 @@ GroupSummary start(const Group& group) {
   return summary;
 }
 
-/// Forces below 1e-12 of the largest in the structure are what rounding leaves of zero, and are reported as zero.
+/// Forces below 1e-12 of the largest in the structure are what rounding leaves of zero, and are reported as
+/// zero.
 void clear_rounding(std::vector<GroupSummary>& summaries) {
   double largest = 0;
   const auto each = [](GroupSummary& s, const auto& action) {
-    for (double* force : {&s.tension_min, &s.tension_max, &s.axial_min, &s.axial_max, &s.moment_max}) action(*force);
+    for (double* force : {&s.tension_min, &s.tension_max, &s.axial_min, &s.axial_max, &s.moment_max})
+      action(*force);
   };
   for (auto& summary : summaries)
     each(summary, [&](double& force) {
