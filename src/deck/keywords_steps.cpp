@@ -127,7 +127,7 @@ Block make_equilibrium() {
   b.key("loads", &Options::loads)
       .refers("load")
       .by_default("all loads of the deck")
-      .says("Loads ramped up in the last stage.");
+      .says("Loads ramped up in the last stage, which act from then on; an empty list: none.");
   b.key("reset", &Options::reset).says("Start again from the reference configuration.");
   return b.take();
 }

@@ -86,20 +86,19 @@ void Context::write_fields(const std::string& name, const output::FieldGrid& gri
   fields_.write(name, output::extract_piece(grid, owner, la::rank()));
 }
 
-assembly::Boundary Context::boundary(const std::vector<std::string>& hold,
-                                     const std::vector<std::string>& loads, bool loaded) const {
+assembly::Boundary Context::boundary(const std::vector<std::string>& hold, bool loaded) const {
   const auto& model = system_->model();
   assembly::Boundary boundary;
   boundary.supports = model.supports;
   if (!hold.empty()) boundary.supports.push_back({"held", hold, model.nodes_of(hold)});
   if (!loaded) return boundary;
-  const auto wanted = [&](const std::string& name) {
-    return loads.empty() || std::find(loads.begin(), loads.end(), name) != loads.end();
+  const auto acts = [&](const std::string& name) {
+    return std::find(acting_loads.begin(), acting_loads.end(), name) != acting_loads.end();
   };
   for (const auto& load : model.loads)
-    if (wanted(load.name)) boundary.loads.push_back(load);
+    if (acts(load.name)) boundary.loads.push_back(load);
   for (const auto& load : deck.loads)
-    if (load.acceleration && wanted(load.name)) boundary.acceleration += *load.acceleration;
+    if (load.acceleration && acts(load.name)) boundary.acceleration += *load.acceleration;
   return boundary;
 }
 

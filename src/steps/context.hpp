@@ -31,6 +31,7 @@ class Context {
   model::Model structure;                        ///< as described; after form-finding, as found
   std::optional<reflector::Paraboloid> surface;  ///< of a reflector
   std::string step_name;                         ///< of the step in hand
+  std::vector<std::string> acting_loads;         ///< by name, since the last equilibrium
   Json results;                                  ///< the whole results.json
 
   /// Time spent on pictures and files so far [s].
@@ -57,10 +58,8 @@ class Context {
   void draw(const std::string& name, const std::string& caption, const output::Chart& chart);
   /// Writes a moment of fields (all ranks, each its piece).
   void write_fields(const std::string& name, const output::FieldGrid& grid);
-  /// Boundary with the deck's supports, all of `hold` clamped, and the loads named (all if empty and
-  /// `loaded`).
-  assembly::Boundary boundary(const std::vector<std::string>& hold, const std::vector<std::string>& loads,
-                              bool loaded) const;
+  /// Boundary with the deck's supports, all of `hold` clamped, and the loads that act if `loaded`.
+  assembly::Boundary boundary(const std::vector<std::string>& hold, bool loaded) const;
 
  private:
   template <class Picture>

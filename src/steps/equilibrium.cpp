@@ -19,6 +19,12 @@ std::vector<StageOptions> stages_of(const EquilibriumOptions& options) {
   return options.stages;
 }
 
+std::vector<std::string> names_of(const std::vector<model::LoadOptions>& loads) {
+  std::vector<std::string> names;
+  for (const auto& load : loads) names.push_back(load.name);
+  return names;
+}
+
 Json newton_table(const analysis::PathSummary& path) {
   Json table = Json::array();
   for (const auto& point : path.points) {
@@ -71,9 +77,10 @@ Json run_step(Context& context, const EquilibriumOptions& options) {
   entry["status"] = "done";
   entry["stages"] = Json::array();
   const auto stages = stages_of(options);
+  context.acting_loads = options.loads ? *options.loads : names_of(context.deck.loads);
   for (std::size_t i = 0; i < stages.size(); ++i) {
     bool reached = true;
-    const auto boundary = context.boundary(stages[i].hold, options.loads, i + 1 == stages.size());
+    const auto boundary = context.boundary(stages[i].hold, i + 1 == stages.size());
     entry["stages"].push_back(run_stage(context, stages[i], boundary, reached));
     if (reached) continue;
     entry["status"] = "not_converged";

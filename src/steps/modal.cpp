@@ -107,7 +107,7 @@ void draw_mode(Context& context, const Points& shape, int number, double frequen
 
 Json run_step(Context& context, const ModalOptions& options) {
   auto& system = context.system();
-  system.begin_stage(context.boundary({}, {}, true));
+  system.begin_stage(context.boundary({}, true));
   auto& workspace = context.workspace();
   system.tangent(workspace.tangent);
   const auto mass = system.mass();

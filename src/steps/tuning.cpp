@@ -133,7 +133,7 @@ analysis::PathSummary make_pass(Context& context, const std::vector<int>& ties, 
                                 int pass) {
   auto& system = context.system();
   system.set_target_strains(changed_strains(system.model(), ties, change));
-  system.begin_stage(context.boundary({}, {}, true));
+  system.begin_stage(context.boundary({}, true));
   return follow(context, fmt::format("pass {}", pass));
 }
 

@@ -45,8 +45,9 @@ struct StageOptions {
 /// `kind: equilibrium`
 struct EquilibriumOptions {
   std::vector<StageOptions> stages;  ///< empty: one stage with the supports only
-  std::vector<std::string> loads;    ///< names of loads ramped up in the last stage; empty: all of the deck
-  bool reset = false;                ///< start again from the reference configuration (as form-found)
+  /// Names of the loads ramped up in the last stage, which act from then on; not given: all of the deck.
+  std::optional<std::vector<std::string>> loads;
+  bool reset = false;  ///< start again from the reference configuration (as form-found)
 };
 
 /// `kind: tuning`
