@@ -91,13 +91,17 @@ class Judge {
   double step = 1;
 
  private:
-  /// Forces in balance and, after the start, an increment that has died out; or increments at round-off with
-  /// forces at the level that round-off of the stiffest element leaves.
+  /// Forces in balance and, after the start, an increment that has died out; or an increment that has died
+  /// out with forces at the level that round-off of the stiffest element leaves, as where a mechanism moves
+  /// without force.
   bool settled(const NewtonIteration& record, double residual, int iteration) {
     const bool balanced = residual <= options_.force_tolerance;
     const bool still = iteration > 0 && record.increment <= options_.increment_tolerance;
+    const auto& norms = record.norms;
+    const bool tiny = norms.force <= norms.rounding_force && norms.moment <= norms.rounding_moment;
     const bool at_rounding =
-        iteration > 0 && record.increment <= 1e-14 && residual <= 1e3 * options_.force_tolerance;
+        iteration > 0 && ((record.increment <= 1e-14 && residual <= 1e3 * options_.force_tolerance) ||
+                          (record.increment <= 1e-9 && tiny));
     const bool at_rest = iteration == 0 && residual <= 1e-3 * options_.force_tolerance;
     if (!(balanced && still) && !at_rounding && !at_rest) return false;
     summary.status = NewtonStatus::converged;

@@ -1,6 +1,7 @@
 #include <tautline/analysis/path.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -19,26 +20,45 @@ la::Inertia inertia_at_end(NonlinearProblem& problem, Workspace& workspace, cons
   return workspace.solver.inertia();
 }
 
+/// One step on, but not past the next of the points k / increments, nor past the end.
+double next_point(double reached, double step, int increments) {
+  const double slack = 1e-12, next = (std::floor(reached * increments + 1e-9) + 1) / increments;
+  const double aim = std::min(reached + step, next);
+  if (aim > 1 - slack) return 1;
+  return aim > next - slack ? next : aim;
+}
+
+NewtonSummary solve_point(PathProblem& problem, Workspace& workspace, const NewtonOptions& options,
+                          const IterationCallback& callback) {
+  if (problem.predict(workspace)) return solve_newton(problem, workspace, options, callback);
+  NewtonSummary summary;
+  summary.status = NewtonStatus::singular;
+  summary.reason = "the tangent stiffness is singular where the supports begin to move";
+  return summary;
+}
+
 }  // namespace
 
 PathSummary follow_path(PathProblem& problem, Workspace& workspace, const NewtonOptions& options,
                         const PathCallback& callback) {
   PathSummary summary;
-  double reached = 0, step = 1;
+  const double longest = 1.0 / options.increments;
+  double reached = 0, step = longest;
   problem.commit();
   try {
     while (reached < 1) {
-      const double aim = reached + step > 1 - 1e-12 ? 1.0 : reached + step;
+      const double aim = next_point(reached, step, options.increments);
       problem.set_lambda(aim);
-      auto newton = solve_newton(problem, workspace, options, [&](int iteration, double residual) {
-        if (callback) callback(aim, iteration, residual);
+      auto newton = solve_point(problem, workspace, options, [&](int iteration, double residual) {
+        if (callback.iteration) callback.iteration(aim, iteration, residual);
       });
       summary.newton_iterations += newton.newton_iterations();
       if (newton.converged()) {
-        if (newton.newton_iterations() <= easy_iterations) step *= 2;
+        if (newton.newton_iterations() <= easy_iterations) step = std::min(2 * step, longest);
         problem.commit();
         reached = aim;
         summary.points.push_back({aim, std::move(newton)});
+        if (callback.converged) callback.converged(aim);
         continue;
       }
       problem.roll_back();

@@ -1,7 +1,6 @@
 #include <tautline/assembly/dof_map.hpp>
 
 #include <algorithm>
-#include <numeric>
 
 #include <tautline/la/session.hpp>
 #include <tautline/mesh/partition.hpp>
@@ -10,28 +9,100 @@ namespace tautline::assembly {
 
 namespace {
 
-std::vector<std::vector<int>> element_nodes(const model::Model& model) {
-  std::vector<std::vector<int>> elements;
-  elements.reserve(model.cables.size() + model.beams.size() + model.membranes.size());
-  for (const auto& e : model.cables) elements.emplace_back(e.nodes.begin(), e.nodes.end());
-  for (const auto& e : model.beams) elements.emplace_back(e.nodes.begin(), e.nodes.end());
-  for (const auto& e : model.membranes) elements.emplace_back(e.nodes.begin(), e.nodes.end());
-  return elements;
+/// Nodes that move together: of elements, links, and linear constraints.
+std::vector<std::vector<int>> neighbourhoods(const model::Model& model) {
+  std::vector<std::vector<int>> lists;
+  model::for_each_kind(model, [&](const auto& elements) {
+    for (const auto& e : elements) lists.emplace_back(e.nodes.begin(), e.nodes.end());
+  });
+  for (const auto& link : model.links) lists.push_back({link.leader, link.follower});
+  for (const auto& pair : model.cyclic_pairs) lists.push_back({pair.leader, pair.follower});
+  for (const auto& constraint : model.constraints) {
+    lists.emplace_back();
+    for (const auto& term : constraint.terms) lists.back().push_back(term.node);
+  }
+  for (auto& list : lists) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  return lists;
 }
 
-/// Blocks that share an element with each block of `layout`'s range, later ones only (upper triangle).
+/// Whether a node's displacement and its rotation are unknowns of their own.
+struct Freedom {
+  std::vector<bool> displacement, rotation;
+};
+
+Freedom freedom(const model::Model& model, const std::vector<bool>& rotational) {
+  Freedom free{std::vector<bool>(model.nodes.size(), true), rotational};
+  for (const auto& link : model.links) {
+    free.displacement[link.follower] = false;
+    free.rotation[link.follower] = rotational[link.follower] && (link.rotation_free || !link.hinge.empty());
+  }
+  for (const auto& pair : model.cyclic_pairs)
+    free.displacement[pair.follower] = free.rotation[pair.follower] = false;
+  return free;
+}
+
+void number_blocks(const Freedom& free, DofMap& map) {
+  const int n_nodes = static_cast<int>(free.displacement.size());
+  map.displacement_block.assign(n_nodes, -1);
+  map.rotation_block.assign(n_nodes, -1);
+  int next = 0;
+  for (int rank = 0; rank < la::size(); ++rank) {
+    if (rank == la::rank()) map.layout.first = next;
+    for (int i = 0; i < n_nodes; ++i) {
+      if (map.node_rank[i] != rank) continue;
+      if (free.displacement[i]) map.displacement_block[i] = next++;
+      if (free.rotation[i]) map.rotation_block[i] = next++;
+    }
+    if (rank == la::rank()) map.layout.local = next - map.layout.first;
+  }
+  map.layout.total = next;
+}
+
+void find_unknowns(const model::Model& model, DofMap& map) {
+  map.displacement_unknowns.resize(model.nodes.size());
+  map.rotation_unknowns.resize(model.nodes.size());
+  const auto add = [](std::vector<int>& to, int block) {
+    if (block >= 0) to.push_back(block);
+  };
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    add(map.displacement_unknowns[i], map.displacement_block[i]);
+    add(map.rotation_unknowns[i], map.rotation_block[i]);
+  }
+  const auto append = [](std::vector<int>& to, const std::vector<int>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  for (const int i : model::links_in_order(model)) {
+    const auto& link = model.links[i];
+    append(map.displacement_unknowns[link.follower], map.displacement_unknowns[link.leader]);
+    append(map.displacement_unknowns[link.follower], map.rotation_unknowns[link.leader]);
+    if (!link.rotation_free) append(map.rotation_unknowns[link.follower], map.rotation_unknowns[link.leader]);
+  }
+  for (const auto& pair : model.cyclic_pairs) {
+    add(map.displacement_unknowns[pair.follower], map.displacement_block[pair.leader]);
+    add(map.rotation_unknowns[pair.follower], map.rotation_block[pair.leader]);
+  }
+  for (const auto& constraint : model.constraints)
+    for (std::size_t k = 1; k < constraint.terms.size(); ++k)
+      add(map.displacement_unknowns[constraint.terms.front().node],
+          map.displacement_block[constraint.terms[k].node]);
+}
+
+/// Blocks that share an element with each block of the rank's range, later ones only (upper triangle).
 la::BlockPattern upper_pattern(const model::Model& model, const DofMap& map) {
   const int first = map.layout.first, last = first + map.layout.local;
   std::vector<std::vector<int>> columns(map.layout.local);
-  const auto note = [&](const auto& blocks) {
-    for (const int row : blocks)
-      if (row >= first && row < last)
-        for (const int column : blocks)
-          if (column > row) columns[row - first].push_back(column);
-  };
-  for (const auto& e : model.cables) note(blocks_of(map, e));
-  for (const auto& e : model.beams) note(blocks_of(map, e));
-  for (const auto& e : model.membranes) note(blocks_of(map, e));
+  model::for_each_kind(model, [&](const auto& elements) {
+    for (const auto& element : elements) {
+      const auto blocks = unknowns_of(model, map, element);
+      for (const int row : blocks)
+        if (map.owns(row))
+          for (const int column : blocks)
+            if (column > row) columns[row - first].push_back(column);
+    }
+  });
   la::BlockPattern pattern;
   for (auto& row : columns) {
     std::sort(row.begin(), row.end());
@@ -47,41 +118,16 @@ la::BlockPattern upper_pattern(const model::Model& model, const DofMap& map) {
 
 DofMap make_dof_map(const model::Model& model) {
   const int n_nodes = static_cast<int>(model.nodes.size());
-  const auto rotational = model.rotational_nodes();
-  auto graph = mesh::node_graph(n_nodes, element_nodes(model));
-  for (int i = 0; i < n_nodes; ++i)
-    if (rotational[i]) graph.weight[i] *= 2;
   DofMap map;
+  map.rotational = model.rotational_nodes();
+  auto graph = mesh::node_graph(n_nodes, neighbourhoods(model));
+  for (int i = 0; i < n_nodes; ++i)
+    if (map.rotational[i]) graph.weight[i] *= 2;
   map.node_rank = mesh::partition(graph, la::size());
-  map.displacement_block.assign(n_nodes, -1);
-  map.rotation_block.assign(n_nodes, -1);
-  int next = 0;
-  for (int rank = 0; rank < la::size(); ++rank) {
-    if (rank == la::rank()) map.layout.first = next;
-    for (int i = 0; i < n_nodes; ++i)
-      if (map.node_rank[i] == rank) {
-        map.displacement_block[i] = next++;
-        if (rotational[i]) map.rotation_block[i] = next++;
-      }
-    if (rank == la::rank()) map.layout.local = next - map.layout.first;
-  }
-  map.layout.total = next;
+  number_blocks(freedom(model, map.rotational), map);
+  find_unknowns(model, map);
   map.pattern = upper_pattern(model, map);
   return map;
-}
-
-std::array<int, 2> blocks_of(const DofMap& map, const model::Cable& cable) {
-  return {map.displacement_block[cable.nodes[0]], map.displacement_block[cable.nodes[1]]};
-}
-
-std::array<int, 4> blocks_of(const DofMap& map, const model::Beam& beam) {
-  return {map.displacement_block[beam.nodes[0]], map.rotation_block[beam.nodes[0]],
-          map.displacement_block[beam.nodes[1]], map.rotation_block[beam.nodes[1]]};
-}
-
-std::array<int, 3> blocks_of(const DofMap& map, const model::Membrane& membrane) {
-  return {map.displacement_block[membrane.nodes[0]], map.displacement_block[membrane.nodes[1]],
-          map.displacement_block[membrane.nodes[2]]};
 }
 
 }  // namespace tautline::assembly

@@ -7,6 +7,8 @@
 #include <tautline/la/session.hpp>
 #include <tautline/model/element_data.hpp>
 
+#include "assembly/expansion.hpp"
+
 namespace tautline::assembly {
 
 namespace {
@@ -17,16 +19,20 @@ constexpr int block_of_columns = 64;  // right-hand sides solved at once
 MatX right_hand_sides(const System& system, const std::vector<int>& cables, int begin, int end) {
   const auto& layout = system.layout();
   MatX b = MatX::Zero(3 * layout.local, end - begin);
+  std::vector<double> all(static_cast<std::size_t>(system.n_dofs()));
   for (int k = begin; k < end; ++k) {
     const auto& cable = system.model().cables[cables[k]];
     const auto data = model::cable_data(system.model(), cable);
-    const Vec<6> derivative = element::cable_force_by_unstressed_length(data.properties, data.x_ref,
-                                                                        gather(system.state(), cable.nodes));
-    const auto blocks = blocks_of(system.dof_map(), cable);
-    for (int i = 0; i < 6; ++i) {
-      const int unknown = 3 * blocks[i / 3] + i % 3, row = unknown - 3 * layout.first;
-      if (row >= 0 && row < b.rows() && !system.held()[unknown]) b(row, k - begin) = -derivative[i];
-    }
+    const Vec<6> derivative = element::cable_force_by_unstressed_length(
+        data.properties, data.x_ref, model::displacements<2>(system.state(), cable.nodes));
+    std::fill(all.begin(), all.end(), 0.0);
+    Expansion(system.kinematics(), system.dof_map(), cable.nodes, false).add(derivative, all);
+    for (const int block : unknowns_of(system.model(), system.dof_map(), cable))
+      for (int c = 0; c < 3; ++c) {
+        const int unknown = 3 * block + c, row = unknown - 3 * layout.first;
+        if (row >= 0 && row < b.rows() && !system.held()[unknown])
+          b(row, k - begin) = -all[static_cast<std::size_t>(unknown)];
+      }
   }
   return b;
 }
@@ -44,11 +50,11 @@ MatX length_influence(System& system, analysis::Workspace& workspace, const std:
   for (int begin = 0; begin < n; begin += block_of_columns) {
     const int end = std::min(n, begin + block_of_columns);
     const MatX x = workspace.solver.solve_many(right_hand_sides(system, cables, begin, end));
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const int row = 3 * (system.dof_map().displacement_block[nodes[i]] - layout.first);
-      if (row < 0 || row >= x.rows()) continue;
-      influence.block(static_cast<Eigen::Index>(3 * i), begin, 3, end - begin) = x.middleRows(row, 3);
-    }
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      for (const auto& [block, matrix] : system.kinematics().displacement(nodes[i]))
+        if (system.dof_map().owns(block))
+          influence.block(static_cast<Eigen::Index>(3 * i), begin, 3, end - begin) +=
+              matrix * x.middleRows(3 * (block - layout.first), 3);
   }
   la::sum_over_ranks(all);
   return influence;

@@ -46,7 +46,7 @@ std::string direction_name(const Vec3& direction) {
 
 /// What hangs on a node, for the likely cause.
 struct Neighbourhood {
-  bool beams = false, membranes = false, taut = false, prestressed = false;
+  bool beams = false, shells = false, membranes = false, taut = false, prestressed = false;
 };
 
 Neighbourhood around(const model::Model& model, int node) {
@@ -55,6 +55,7 @@ Neighbourhood around(const model::Model& model, int node) {
   };
   Neighbourhood n;
   for (const auto& beam : model.beams) n.beams = n.beams || touches(beam);
+  for (const auto& shell : model.shells) n.shells = n.shells || touches(shell);
   for (const auto& cable : model.cables) n.taut = n.taut || (touches(cable) && cable.initial_strain > 0);
   for (const auto& membrane : model.membranes)
     if (touches(membrane)) {
@@ -66,7 +67,7 @@ Neighbourhood around(const model::Model& model, int node) {
 
 std::string likely_cause(const model::Model& model, int node) {
   const Neighbourhood n = around(model, node);
-  if (n.beams)
+  if (n.beams || n.shells)
     return "the supports leave the frame free to move: hold it in more directions, or at more nodes";
   if (n.membranes && !n.prestressed && !n.taut)
     return "a membrane without prestress does not resist motion out of its plane: give its group a "

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tautline/core/stopwatch.hpp>
-#include <tautline/element/cable.hpp>
-#include <tautline/la/session.hpp>
-#include <tautline/model/element_data.hpp>
+#include <fmt/format.h>
 
-#include "assembly/rotation.hpp"
+#include <tautline/core/error.hpp>
+#include <tautline/core/stopwatch.hpp>
+#include <tautline/la/session.hpp>
+
+#include "assembly/contribution.hpp"
+#include "assembly/expansion.hpp"
 
 namespace tautline::assembly {
 
@@ -16,114 +18,201 @@ using element::Want;
 
 namespace {
 
-template <class Blocks, class Force>
-void scatter(const Blocks& blocks, const Force& values, std::vector<double>& force,
-             std::vector<double>& magnitude) {
-  for (std::size_t b = 0; b < blocks.size(); ++b)
-    for (int c = 0; c < 3; ++c) {
-      const double value = values[3 * static_cast<int>(b) + c];
-      force[3 * blocks[b] + c] += value;
-      magnitude[3 * blocks[b] + c] += std::abs(value);
-    }
-}
-
-/// Adds an element matrix without the rows and columns of held unknowns.
-template <class Blocks, class Matrix>
-void scatter(const Blocks& blocks, Matrix& values, const std::vector<bool>& held, la::SymmetricMatrix& to) {
-  for (std::size_t b = 0; b < blocks.size(); ++b)
-    for (int c = 0; c < 3; ++c)
-      if (held[3 * blocks[b] + c]) {
-        values.row(3 * static_cast<int>(b) + c).setZero();
-        values.col(3 * static_cast<int>(b) + c).setZero();
-      }
-  to.add(blocks, values.data());
-}
-
 double bounding_size(const model::Model& model) {
   Vec3 low = model.nodes.front(), high = low;
   for (const auto& node : model.nodes) {
     low = low.cwiseMin(node);
     high = high.cwiseMax(node);
   }
-  return (high - low).norm();
+  const double size = (high - low).norm();
+  return size > 0 ? size : 1;
 }
 
+/// Adds an element matrix, given in unknowns, without the rows and columns of held ones.
+template <class Matrix>
+void add_free(std::span<const int> blocks, Matrix& values, const std::vector<bool>& held,
+              la::SymmetricMatrix& to) {
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    for (int c = 0; c < 3; ++c)
+      if (held[static_cast<std::size_t>(3 * blocks[b] + c)]) {
+        values.row(3 * static_cast<int>(b) + c).setZero();
+        values.col(3 * static_cast<int>(b) + c).setZero();
+      }
+  to.add(blocks, values.data());
+}
+
+/// Adds to a matrix in unknowns what forces on followers add through their arms and hinges.
+class LinkTerms {
+ public:
+  LinkTerms(const Kinematics& kinematics, const DofMap& map, const model::Model& model,
+            const Expansion& expansion, MatX& matrix)
+      : kinematics_(kinematics), map_(map), model_(model), expansion_(expansion), matrix_(matrix) {}
+
+  /// Of forces on the rows of an element.
+  template <class Nodes, class Force>
+  void add(const Nodes& nodes, bool rotations, const Force& force) {
+    const int stride = rotations ? 6 : 3;
+    int row = 0;
+    for (const int node : nodes) {
+      const Vec3 f = force.template segment<3>(row);
+      const Vec3 m = rotations ? Vec3(force.template segment<3>(row + 3)) : Vec3(Vec3::Zero());
+      add(node, f, m);
+      row += stride;
+    }
+  }
+
+ private:
+  /// A follower hands its force on to its leader, which may follow another.
+  void add(int node, const Vec3& f, const Vec3& m) {
+    const int index = kinematics_.link_of(node);
+    if (index < 0) return;
+    const auto& link = model_.links[static_cast<std::size_t>(index)];
+    const Mat<6> h = kinematics_.second_derivative(index, f, m);
+    const auto& spin = kinematics_.rotation(link.leader);
+    const int hinge = link.hinge.empty() ? -1 : map_.rotation_block[static_cast<std::size_t>(node)];
+    const int b = hinge < 0 ? -1 : 3 * expansion_.place_of(hinge);
+    for (const auto& [block, by] : spin) {
+      const int a = 3 * expansion_.place_of(block);
+      for (const auto& [other, by_other] : spin)
+        matrix_.block<3, 3>(a, 3 * expansion_.place_of(other)) +=
+            by.transpose() * h.topLeftCorner<3, 3>() * by_other;
+      if (b < 0) continue;
+      const Mat3 cross = by.transpose() * h.topRightCorner<3, 3>();
+      matrix_.block<3, 3>(a, b) += cross;
+      matrix_.block<3, 3>(b, a) += cross.transpose();
+    }
+    if (b >= 0) matrix_.block<3, 3>(b, b) += h.bottomRightCorner<3, 3>();
+    add(link.leader, f, kinematics_.lever(index).cross(f) + (link.rotation_free ? Vec3(Vec3::Zero()) : m));
+  }
+
+  const Kinematics& kinematics_;
+  const DofMap& map_;
+  const model::Model& model_;
+  const Expansion& expansion_;
+  MatX& matrix_;
+};
+
 }  // namespace
+
+Acting Acting::blended(const Acting& other, double t) const {
+  const auto blend = [t](const auto& a, const auto& b) {
+    auto result = a;
+    for (std::size_t i = 0; i < a.size(); ++i) result[i] = (1 - t) * a[i] + t * b[i];
+    return result;
+  };
+  return {blend(force, other.force),       blend(moment, other.moment),
+          blend(pressure, other.pressure), blend(temperature, other.temperature),
+          blend(strain, other.strain),     (1 - t) * acceleration + t * other.acceleration};
+}
 
 System::System(model::Model model)
     : model_(std::move(model)),
       map_(make_dof_map(model_)),
+      kinematics_(model_, map_),
       state_(model::State::reference(model_)),
       committed_(state_),
+      turned_(model_.nodes.size(), Vec3::Zero()),
       size_(bounding_size(model_)) {
-  const auto own = [&](int node) { return map_.node_rank[node] == la::rank(); };
   const auto mine = [&](const auto& elements, std::vector<int>& indices) {
-    for (int i = 0; i < static_cast<int>(elements.size()); ++i)
-      if (std::any_of(elements[i].nodes.begin(), elements[i].nodes.end(), own)) indices.push_back(i);
+    for (int i = 0; i < static_cast<int>(elements.size()); ++i) {
+      const auto blocks = unknowns_of(model_, map_, elements[i]);
+      if (std::any_of(blocks.begin(), blocks.end(), [&](int block) { return map_.owns(block); }))
+        indices.push_back(i);
+    }
   };
   mine(model_.cables, share_.cables);
   mine(model_.beams, share_.beams);
   mine(model_.membranes, share_.membranes);
-  for (const auto& cable : model_.cables) end_strain_.push_back(cable.initial_strain);
-  start_strain_ = end_strain_;
-  const auto unknowns = static_cast<std::size_t>(n_dofs());
-  origin_.assign(unknowns, 0.0);
-  held_.assign(unknowns, false);
-  start_force_.assign(unknowns, 0.0);
-  end_force_ = magnitude_ = start_force_;
+  mine(model_.shells, share_.shells);
+  mine(model_.springs, share_.springs);
+  mine(model_.masses, share_.masses);
+  origin_.assign(static_cast<std::size_t>(n_dofs()), 0.0);
+  magnitude_ = start_residual_ = origin_;
+  end_ = start_ = now_ = acting({});
   for (const auto& group : model_.groups)
-    if (group.kind == model::ElementKind::cable)
+    if (model::is_cable_like(group.kind))
       support_stiffness_ = std::max(support_stiffness_, group.cable.axial_stiffness / size_);
+  find_rounding();
+}
+
+void System::find_rounding() {
+  constexpr double relative = 1e-13;  // some hundred units in the last place
+  const auto note = [](double& to, double value) { to = std::max(to, relative * value); };
+  for (const auto& group : model_.groups) {
+    if (model::is_cable_like(group.kind)) note(rounding_force_, group.cable.axial_stiffness);
+    if (group.kind == model::ElementKind::beam) note(rounding_force_, group.beam.axial_stiffness);
+    if (group.kind == model::ElementKind::membrane)
+      note(rounding_force_, group.membrane.tension_stiffness * size_);
+    if (group.kind == model::ElementKind::shell) {
+      const double stretching = group.shell.young_modulus * group.shell.thickness;
+      note(rounding_force_, stretching * size_);
+      note(rounding_moment_, stretching * group.shell.thickness * size_);
+    }
+  }
+  for (const auto& beam : model_.beams) {
+    const auto& section = model_.groups[beam.group].beam;
+    const double length = (model_.nodes[beam.nodes[1]] - model_.nodes[beam.nodes[0]]).norm();
+    const double bending = std::max(section.bending_stiffness_2, section.bending_stiffness_3);
+    note(rounding_force_, bending / (length * length));
+    note(rounding_moment_, std::max(section.axial_stiffness * length, bending / length));
+  }
 }
 
 void System::set_state(const model::State& state) {
   state_ = committed_ = state;
+  drives_.clear();
+  kinematics_.linearise(state_);
   restart();
 }
 
 void System::set_state(const model::State& state, const std::vector<double>& strains) {
   set_state(state);
   for (std::size_t i = 0; i < strains.size(); ++i) model_.cables[i].initial_strain = strains[i];
-  start_strain_ = end_strain_ = strains;
+  start_.strain = end_.strain = now_.strain = strains;
+}
+
+void System::reset() {
+  set_state(model::State::reference(model_));
+  std::fill(turned_.begin(), turned_.end(), Vec3::Zero());
+  start_ = end_ = now_ = acting({});
 }
 
 std::vector<double> System::strains() const {
-  std::vector<double> result;
-  for (const auto& cable : model_.cables) result.push_back(cable.initial_strain);
-  return result;
-}
-
-void System::hold(const std::vector<model::Support>& supports) {
-  held_.assign(held_.size(), false);
-  for (const auto& support : supports)
-    for (const int node : support.nodes)
-      for (int c = 0; c < 6; ++c) {
-        const int block = c < 3 ? map_.displacement_block[node] : map_.rotation_block[node];
-        if (support.fixed[c] && block >= 0) held_[3 * block + c % 3] = true;
-      }
+  return now_.strain;
 }
 
 OutOfBalance System::begin_stage(const Boundary& boundary) {
-  hold(boundary.supports);
-  start_force_ = internal_forces();
-  end_force_ = dead_loads(boundary);
-  for (std::size_t i = 0; i < model_.cables.size(); ++i) start_strain_[i] = model_.cables[i].initial_strain;
-  end_strain_ = wanted_strain_ ? std::move(*wanted_strain_) : start_strain_;
+  for (const auto& drive : drives_)
+    for (std::size_t node = 0; node < turned_.size(); ++node)
+      if (map_.rotation_block[node] == drive.block)
+        turned_[node] += kinematics_.frame(drive.block) * drive.way * driven_to_;
+  kinematics_.hold(boundary.supports);
+  kinematics_.linearise(state_);
+  start_ = now_;
+  end_ = acting(boundary);
+  end_.strain = wanted_strain_ ? std::move(*wanted_strain_) : start_.strain;
   wanted_strain_.reset();
+  find_drives(boundary);
+  driven_to_ = committed_drive_ = 0;
+  apply(0);
+  start_residual_ = out_of_balance();
+  // What meets the eye: the imbalance once the loads of the stage act in full.
+  apply(1);
+  const auto imbalance = out_of_balance();
+  apply(0);
   OutOfBalance result;
   for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
-    const auto largest = [&](int block) {
+    const auto size_of = [&](int block) {
       Vec3 value = Vec3::Zero();
-      for (int c = 0; c < 3; ++c)
-        if (!held_[3 * block + c]) value[c] = start_force_[3 * block + c] - end_force_[3 * block + c];
+      for (int c = 0; block >= 0 && c < 3; ++c)
+        if (!held()[static_cast<std::size_t>(3 * block + c)])
+          value[c] = imbalance[static_cast<std::size_t>(3 * block + c)];
       return value.norm();
     };
-    const double force = largest(map_.displacement_block[node]);
+    const double force = size_of(map_.displacement_block[node]);
     if (force > result.force) result = {force, result.moment, static_cast<int>(node)};
-    if (map_.rotation_block[node] >= 0)
-      result.moment = std::max(result.moment, largest(map_.rotation_block[node]));
+    result.moment = std::max(result.moment, size_of(map_.rotation_block[node]));
   }
-  set_lambda(0);
   return result;
 }
 
@@ -132,41 +221,63 @@ void System::set_target_strains(std::vector<double> strains) {
 }
 
 void System::set_lambda(double lambda) {
+  apply(lambda);
+}
+
+void System::apply(double lambda) {
   lambda_ = lambda;
-  apply_strains();
+  now_ = start_.blended(end_, lambda);
+  for (std::size_t i = 0; i < model_.cables.size(); ++i) model_.cables[i].initial_strain = now_.strain[i];
+  for (std::size_t g = 0; g < model_.groups.size(); ++g)
+    model_.groups[g].temperature_change = now_.temperature[g];
+  model_.acceleration = now_.acceleration;
 }
 
-void System::apply_strains() {
-  for (std::size_t i = 0; i < model_.cables.size(); ++i)
-    model_.cables[i].initial_strain = (1 - lambda_) * start_strain_[i] + lambda_ * end_strain_[i];
+template <class Visit>
+void System::for_each_own(const Visit& visit) const {
+  const auto each = [&](const auto& elements, const std::vector<int>& indices) {
+    for (const int i : indices) visit(elements[static_cast<std::size_t>(i)]);
+  };
+  each(model_.cables, share_.cables);
+  each(model_.beams, share_.beams);
+  each(model_.membranes, share_.membranes);
+  each(model_.shells, share_.shells);
+  each(model_.springs, share_.springs);
+  each(model_.masses, share_.masses);
 }
 
-void System::add_internal(const model::State& state, std::vector<double>& force,
-                          std::vector<double>& magnitude) const {
-  for (const int i : share_.cables) {
-    const auto& cable = model_.cables[i];
-    const auto data = model::cable_data(model_, cable);
-    scatter(
-        blocks_of(map_, cable),
-        element::evaluate_cable(data.properties, data.x_ref, gather(state, cable.nodes), Want::force).force,
-        force, magnitude);
-  }
-  for (const int i : share_.beams) {
-    const auto& beam = model_.beams[i];
-    scatter(blocks_of(map_, beam),
-            element::evaluate_beam(model_.groups[beam.group].beam, model::beam_geometry(model_, beam),
-                                   beam_motion(state, beam), Want::force)
-                .force,
-            force, magnitude);
-  }
-  for (const int i : share_.membranes) {
-    const auto& membrane = model_.membranes[i];
-    scatter(blocks_of(map_, membrane),
-            element::evaluate_membrane(model_.groups[membrane.group].membrane, membrane.prestress,
-                                       membrane_nodes(model_, membrane), gather(state, membrane.nodes),
-                                       Want::force)
-                .force,
-            force, magnitude);
+template <class Visit>
+void System::for_each_pressed(const Visit& visit) const {
+  for (const int i : share_.membranes)
+    if (const double p = now_.pressure[static_cast<std::size_t>(i)]; p != 0)
+      visit(model_.membranes[static_cast<std::size_t>(i)].nodes, p);
+  for (const int i : share_.shells)
+    if (const double p = now_.pressure[model_.membranes.size() + static_cast<std::size_t>(i)]; p != 0)
+      visit(model_.shells[static_cast<std::size_t>(i)].nodes, p);
+}
+
+void System::add_forces(const model::State& state, const Kinematics& at, std::vector<double>& force,
+                        std::vector<double>& magnitude) const {
+  const auto add = [&](const auto& nodes, bool rotations, const auto& values) {
+    const Expansion expansion(at, map_, nodes, rotations);
+    expansion.add(values, force);
+    expansion.add(values.cwiseAbs(), magnitude);
+  };
+  for_each_own([&](const auto& element) {
+    add(element.nodes, uses_rotations(model_, element),
+        contribution(model_, state, element, Want::force).force);
+  });
+  for_each_pressed([&](const model::FacetNodes& nodes, double pressure) {
+    const Expansion expansion(at, map_, nodes, false);
+    expansion.add(-pressure_contribution(model_, state, nodes, pressure, Want::force).force, force);
+  });
+  for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
+    const bool turns = map_.rotational[node];
+    if (now_.force[node].isZero(0) && (!turns || now_.moment[node].isZero(0))) continue;
+    Vec<6> load;
+    load << now_.force[node], now_.moment[node];
+    const Expansion expansion(at, map_, std::array<int, 1>{static_cast<int>(node)}, turns);
+    expansion.add(-load.head(turns ? 6 : 3), force);
   }
 }
 
@@ -175,68 +286,42 @@ std::span<const double> System::own_part(const std::vector<double>& all) const {
                                 static_cast<std::size_t>(3 * map_.layout.local));
 }
 
-std::vector<double> System::internal_forces() const {
-  std::vector<double> force(held_.size(), 0.0), magnitude(held_.size(), 0.0);
-  add_internal(state_, force, magnitude);
+std::vector<double> System::gathered(const std::vector<double>& own_complete) const {
+  std::vector<double> all;
   la::Vector own(map_.layout);
-  own.write(own_part(force));
-  own.gather(force);
-  return force;
+  own.write(own_part(own_complete));
+  own.gather(all);
+  return all;
 }
 
-std::vector<double> System::dead_loads(const Boundary& boundary) const {
-  std::vector<double> force(held_.size(), 0.0);
-  const auto add = [&](int block, const Vec3& value) {
-    for (int c = 0; c < 3 && block >= 0; ++c) force[3 * block + c] += value[c];
-  };
-  for (const auto& load : boundary.loads)
-    for (const int node : load.nodes) {
-      add(map_.displacement_block[node], load.force);
-      add(map_.rotation_block[node], load.moment);
-    }
-  if (boundary.acceleration.isZero(0)) return force;
-  la::Vector uniform(map_.layout), inertia(map_.layout);
-  std::vector<double> field(held_.size(), 0.0), all;
-  for (const int block : map_.displacement_block)
-    for (int c = 0; c < 3; ++c) field[3 * block + c] = boundary.acceleration[c];
-  uniform.write(own_part(field));
-  assemble_mass(std::vector<bool>(held_.size(), false)).multiply(uniform, inertia);
-  inertia.gather(all);
-  for (std::size_t i = 0; i < force.size(); ++i) force[i] += all[i];
-  return force;
-}
-
-model::State System::moved(const std::vector<double>& x) const {
-  model::State state = state_;
-  for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
-    const auto increment = [&](int block) -> Vec3 {
-      return Eigen::Map<const Vec3>(&x[3 * block]) - Eigen::Map<const Vec3>(&origin_[3 * block]);
-    };
-    state.displacement[node] += increment(map_.displacement_block[node]);
-    if (map_.rotation_block[node] >= 0)
-      state.rotation[node] = rotation_of(increment(map_.rotation_block[node])) * state.rotation[node];
-  }
-  return state;
+std::vector<double> System::out_of_balance() const {
+  std::vector<double> force(origin_.size(), 0.0), magnitude(origin_.size(), 0.0);
+  add_forces(state_, kinematics_, force, magnitude);
+  return gathered(force);
 }
 
 void System::residual(const la::Vector& x, la::Vector& f) {
   const Stopwatch watch(assembly_seconds_);
   std::vector<double> all;
   x.gather(all);
-  std::vector<double> force(held_.size(), 0.0);
-  magnitude_.assign(held_.size(), 0.0);
-  add_internal(moved(all), force, magnitude_);
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    force[i] -= (1 - lambda_) * start_force_[i] + lambda_ * end_force_[i];
-    if (held_[i]) force[i] = 0;
-  }
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] -= origin_[i];
+  const auto state = kinematics_.moved(state_, all);
+  kinematics_.linearise(state);
+  std::vector<double> force(origin_.size(), 0.0);
+  magnitude_.assign(origin_.size(), 0.0);
+  add_forces(state, kinematics_, force, magnitude_);
+  for (std::size_t i = 0; i < force.size(); ++i)
+    force[i] = held()[i] ? 0.0 : force[i] - (1 - lambda_) * start_residual_[i];
   f.write(own_part(force));
 }
 
 void System::accept(const la::Vector& x) {
-  std::vector<double> all;
+  std::vector<double> all, increments;
   x.gather(all);
-  state_ = moved(all);
+  increments = all;
+  for (std::size_t i = 0; i < all.size(); ++i) increments[i] -= origin_[i];
+  state_ = kinematics_.moved(state_, increments);
+  kinematics_.linearise(state_);
   origin_ = std::move(all);
 }
 
@@ -246,68 +331,106 @@ void System::restart() {
 
 void System::commit() {
   committed_ = state_;
+  committed_drive_ = driven_to_;
 }
 
 void System::roll_back() {
   state_ = committed_;
+  driven_to_ = committed_drive_;
+  kinematics_.linearise(state_);
   restart();
+}
+
+std::vector<double> System::stiffness_times(const std::vector<double>& increment) const {
+  std::vector<double> product(origin_.size(), 0.0);
+  for_each_own([&](const auto& element) {
+    const Expansion expansion(kinematics_, map_, element.nodes, uses_rotations(model_, element));
+    const auto c = contribution(model_, state_, element, Want::tangent);
+    expansion.add((c.tangent * expansion.template rows_of<VecX>(increment)).eval(), product);
+  });
+  return product;
+}
+
+bool System::predict(analysis::Workspace& workspace) {
+  if (drives_.empty() || lambda_ == driven_to_) return true;
+  std::vector<double> way(origin_.size(), 0.0);
+  for (const auto& drive : drives_)
+    for (int c = 0; c < 3; ++c)
+      way[static_cast<std::size_t>(3 * drive.block + c)] = (lambda_ - driven_to_) * drive.way[c];
+  restart();
+  la::Vector x(map_.layout), f(map_.layout);
+  residual(x, f);
+  const auto resistance = stiffness_times(way);
+  std::vector<double> right(static_cast<std::size_t>(3 * map_.layout.local));
+  f.read(right);
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    const std::size_t unknown = i + static_cast<std::size_t>(3 * map_.layout.first);
+    right[i] = held()[unknown] ? 0.0 : -right[i] - resistance[unknown];
+  }
+  f.write(right);
+  tangent(workspace.tangent);
+  if (!workspace.solver.factor(workspace.tangent)) return false;
+  workspace.solver.solve(f, x);
+  x.read(right);
+  for (std::size_t i = 0; i < right.size(); ++i)
+    right[i] += way[i + static_cast<std::size_t>(3 * map_.layout.first)];
+  x.write(right);
+  accept(x);
+  restart();
+  driven_to_ = lambda_;
+  return true;
 }
 
 void System::tangent(la::SymmetricMatrix& k) {
   const Stopwatch watch(assembly_seconds_);
+  kinematics_.linearise(state_);
   k.set_zero();
-  for (const int i : share_.cables) {
-    const auto& cable = model_.cables[i];
-    const auto data = model::cable_data(model_, cable);
-    auto response =
-        element::evaluate_cable(data.properties, data.x_ref, gather(state_, cable.nodes), Want::tangent);
-    scatter(blocks_of(map_, cable), response.tangent, held_, k);
-  }
-  for (const int i : share_.beams) {
-    const auto& beam = model_.beams[i];
-    auto response = element::evaluate_beam(model_.groups[beam.group].beam, model::beam_geometry(model_, beam),
-                                           beam_motion(state_, beam), Want::tangent);
-    scatter(blocks_of(map_, beam), response.tangent, held_, k);
-  }
-  for (const int i : share_.membranes) {
-    const auto& membrane = model_.membranes[i];
-    auto response = element::evaluate_membrane(model_.groups[membrane.group].membrane, membrane.prestress,
-                                               membrane_nodes(model_, membrane),
-                                               gather(state_, membrane.nodes), Want::tangent);
-    scatter(blocks_of(map_, membrane), response.tangent, held_, k);
+  const auto add = [&](const auto& nodes, bool rotations, const auto& force, auto& values) {
+    const Expansion expansion(kinematics_, map_, nodes, rotations);
+    if (expansion.plain()) return add_free(expansion.blocks(), values, held(), k);
+    const MatX& b = expansion.matrix();
+    MatX transformed = b.transpose() * values * b;
+    LinkTerms(kinematics_, map_, model_, expansion, transformed).add(nodes, rotations, force);
+    add_free(expansion.blocks(), transformed, held(), k);
+  };
+  for_each_own([&](const auto& element) {
+    auto c = contribution(model_, state_, element, Want::tangent);
+    add(element.nodes, uses_rotations(model_, element), c.force, c.tangent);
+  });
+  for_each_pressed([&](const model::FacetNodes& nodes, double pressure) {
+    auto c = pressure_contribution(model_, state_, nodes, pressure, Want::tangent);
+    c.force = -c.force;
+    c.tangent = -c.tangent;
+    add(nodes, false, c.force, c.tangent);
+  });
+  for (const auto& link : model_.links) {  // dead loads at the end of an arm
+    const auto& [force, moment] = std::pair(now_.force[link.follower], now_.moment[link.follower]);
+    if (force.isZero(0) && moment.isZero(0)) continue;
+    const bool turns = map_.rotational[link.follower];
+    Vec<6> load;
+    load << -force, -moment;
+    ElementMatrix none = ElementMatrix::Zero(turns ? 6 : 3, turns ? 6 : 3);
+    add(std::array<int, 1>{link.follower}, turns, load, none);
   }
   for (int block = map_.layout.first; block < map_.layout.first + map_.layout.local; ++block) {
     Mat3 identity = Mat3::Zero();
     for (int c = 0; c < 3; ++c)
-      if (held_[3 * block + c]) identity(c, c) = support_stiffness_;
+      if (held()[static_cast<std::size_t>(3 * block + c)]) identity(c, c) = support_stiffness_;
     k.add(std::array<int, 1>{block}, identity.data());
   }
   k.finish();
 }
 
-la::SymmetricMatrix System::assemble_mass(const std::vector<bool>& without) const {
+la::SymmetricMatrix System::mass(MassKind kind) const {
   la::SymmetricMatrix m = new_matrix();
-  for (const int i : share_.cables) {
-    const auto& cable = model_.cables[i];
-    auto values = element::cable_mass(model_.groups[cable.group].cable.mass_per_length,
-                                      model::cable_data(model_, cable).x_ref);
-    scatter(blocks_of(map_, cable), values, without, m);
-  }
-  for (const int i : share_.beams) {
-    const auto& beam = model_.beams[i];
-    const auto geometry = model::beam_geometry(model_, beam);
-    const auto response = element::evaluate_beam(model_.groups[beam.group].beam, geometry,
-                                                 beam_motion(state_, beam), Want::force);
-    auto values = element::beam_mass(model_.groups[beam.group].beam,
-                                     (geometry.x_ref.col(1) - geometry.x_ref.col(0)).norm(), response.frame);
-    scatter(blocks_of(map_, beam), values, without, m);
-  }
-  for (const int i : share_.membranes) {
-    const auto& membrane = model_.membranes[i];
-    auto values = element::membrane_mass(model_.groups[membrane.group].membrane.mass_per_area,
-                                         membrane_nodes(model_, membrane));
-    scatter(blocks_of(map_, membrane), values, without, m);
-  }
+  for_each_own([&](const auto& element) {
+    const Expansion expansion(kinematics_, map_, element.nodes, uses_rotations(model_, element));
+    auto values = mass_of(model_, state_, element, kind);
+    if (expansion.plain()) return add_free(expansion.blocks(), values, held(), m);
+    const MatX& b = expansion.matrix();
+    MatX transformed = b.transpose() * values * b;
+    add_free(expansion.blocks(), transformed, held(), m);
+  });
   const Mat3 zero = Mat3::Zero();
   for (int block = map_.layout.first; block < map_.layout.first + map_.layout.local; ++block)
     m.add(std::array<int, 1>{block}, zero.data());
@@ -318,42 +441,55 @@ la::SymmetricMatrix System::assemble_mass(const std::vector<bool>& without) cons
 double System::second_variation(const la::Vector& x) const {
   std::vector<double> all;
   x.gather(all);
-  const auto first_is_own = [&](const auto& element) {
-    return map_.node_rank[element.nodes[0]] == la::rank();
-  };
-  const auto at = [&](int block) { return Eigen::Map<const Vec3>(&all[3 * block]); };
   double sum = 0;
-  for (const int i : share_.cables) {
-    const auto& cable = model_.cables[i];
-    if (!first_is_own(cable)) continue;
-    const auto data = model::cable_data(model_, cable);
-    const auto tangent =
-        element::evaluate_cable(data.properties, data.x_ref, gather(state_, cable.nodes), Want::tangent)
-            .tangent;
-    const auto blocks = blocks_of(map_, cable);
-    const Vec3 relative = at(blocks[1]) - at(blocks[0]);
-    sum += relative.dot(tangent.topLeftCorner<3, 3>() * relative);
-  }
-  for (const int i : share_.beams) {
-    const auto& beam = model_.beams[i];
-    if (!first_is_own(beam)) continue;
-    const auto blocks = blocks_of(map_, beam);
-    Vec<12> v;
-    v << at(blocks[0]), at(blocks[1]), at(blocks[2]), at(blocks[3]);
-    sum += element::beam_second_variation(model_.groups[beam.group].beam, model::beam_geometry(model_, beam),
-                                          beam_motion(state_, beam), v);
-  }
-  for (const int i : share_.membranes) {
-    const auto& membrane = model_.membranes[i];
-    if (!first_is_own(membrane)) continue;
-    const auto blocks = blocks_of(map_, membrane);
-    Vec<9> v;
-    v << at(blocks[0]), at(blocks[1]), at(blocks[2]);
-    const auto tangent = element::evaluate_membrane(model_.groups[membrane.group].membrane,
-                                                    membrane.prestress, membrane_nodes(model_, membrane),
-                                                    gather(state_, membrane.nodes), Want::tangent)
-                             .tangent;
-    sum += v.dot(tangent * v);
+  const auto add_links = [&](const Expansion& expansion, const auto& nodes, bool rotations,
+                             const auto& force) {
+    if (expansion.plain()) return;
+    const auto list = expansion.blocks();
+    const auto n = 3 * static_cast<Eigen::Index>(list.size());
+    MatX terms = MatX::Zero(n, n);
+    LinkTerms(kinematics_, map_, model_, expansion, terms).add(nodes, rotations, force);
+    VecX v(n);
+    for (std::size_t i = 0; i < list.size(); ++i)
+      v.segment<3>(3 * static_cast<Eigen::Index>(i)) =
+          Eigen::Map<const Vec3>(&all[static_cast<std::size_t>(3 * list[i])]);
+    sum += v.dot(terms * v);
+  };
+  const auto is_mine = [&](const auto& nodes) {
+    return map_.node_rank[static_cast<std::size_t>(*std::begin(nodes))] == la::rank();
+  };
+  const auto each = [&](const auto& elements) {
+    for (const auto& element : elements) {
+      if (!is_mine(element.nodes)) continue;
+      const bool rotations = uses_rotations(model_, element);
+      const Expansion expansion(kinematics_, map_, element.nodes, rotations);
+      sum += assembly::second_variation(model_, state_, element, expansion.rows_of<ElementVector>(all));
+      if (!expansion.plain())
+        add_links(expansion, element.nodes, rotations,
+                  contribution(model_, state_, element, Want::force).force);
+    }
+  };
+  model::for_each_kind(model_, each);
+  const auto add_pressure = [&](const auto& facets, std::size_t first) {
+    for (std::size_t i = 0; i < facets.size(); ++i) {
+      const double p = now_.pressure[first + i];
+      if (p == 0 || !is_mine(facets[i].nodes)) continue;
+      const Expansion expansion(kinematics_, map_, facets[i].nodes, false);
+      const auto c = pressure_contribution(model_, state_, facets[i].nodes, p, Want::tangent);
+      const auto v = expansion.rows_of<ElementVector>(all);
+      sum -= v.dot(c.tangent * v);
+      add_links(expansion, facets[i].nodes, false, (-c.force).eval());
+    }
+  };
+  add_pressure(model_.membranes, 0);
+  add_pressure(model_.shells, model_.membranes.size());
+  for (const auto& link : model_.links) {
+    if (map_.node_rank[link.follower] != la::rank()) continue;
+    const bool turns = map_.rotational[link.follower];
+    Vec<6> load;
+    load << -now_.force[link.follower], -now_.moment[link.follower];
+    const std::array<int, 1> node{link.follower};
+    add_links(Expansion(kinematics_, map_, node, turns), node, turns, load);
   }
   return la::sum_over_ranks(sum);
 }
@@ -365,55 +501,77 @@ analysis::ResidualNorms System::norms(const la::Vector& f) const {
   for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
     if (map_.node_rank[node] != la::rank()) continue;
     const auto add = [&](int block, double& residual, double& reference) {
-      for (int c = 0; c < 3; ++c) {
+      for (int c = 0; block >= 0 && c < 3; ++c) {
         const double value = own[static_cast<std::size_t>(3 * (block - map_.layout.first) + c)];
         residual += value * value;
-        reference += std::pow(magnitude_[3 * block + c], 2);
+        reference += std::pow(magnitude_[static_cast<std::size_t>(3 * block + c)], 2);
       }
     };
     add(map_.displacement_block[node], sums[0], sums[2]);
-    if (map_.rotation_block[node] >= 0) add(map_.rotation_block[node], sums[1], sums[3]);
+    add(map_.rotation_block[node], sums[1], sums[3]);
   }
   for (double& sum : sums) sum = std::sqrt(la::sum_over_ranks(sum));
   // Where nothing bends yet there is no moment to compare with: force times size stands in, far below any
   // real moment. Where moments alone act there is no force to compare with: moment over size stands in, below
   // any shear force that makes such moments.
-  return {sums[0], sums[1], std::max(sums[2], sums[3] / size_), std::max(sums[3], 1e-3 * sums[2] * size_)};
+  return {sums[0],
+          sums[1],
+          std::max(sums[2], sums[3] / size_),
+          std::max(sums[3], 1e-3 * sums[2] * size_),
+          rounding_force_,
+          rounding_moment_};
 }
 
 double System::relative_size(const la::Vector& increment) const {
   std::vector<double> own(static_cast<std::size_t>(3 * map_.layout.local));
   increment.read(own);
   double largest = 0;
-  for (std::size_t node = 0; node < model_.nodes.size(); ++node)
-    if (map_.node_rank[node] == la::rank()) {
-      const auto at = static_cast<std::size_t>(3 * (map_.displacement_block[node] - map_.layout.first));
-      largest = std::max(largest, Eigen::Map<const Vec3>(&own[at]).norm());
-    }
+  for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
+    const int block = map_.displacement_block[node];
+    if (block < 0 || map_.node_rank[node] != la::rank()) continue;
+    const auto at = static_cast<std::size_t>(3 * (block - map_.layout.first));
+    largest = std::max(largest, Eigen::Map<const Vec3>(&own[at]).norm());
+  }
   return la::max_over_ranks(largest) / size_;
 }
 
-System::Reactions System::reactions() {
-  const auto internal = internal_forces();
-  Reactions result{Points(model_.nodes.size(), Vec3::Zero()), Points(model_.nodes.size(), Vec3::Zero())};
-  for (std::size_t node = 0; node < model_.nodes.size(); ++node)
-    for (int c = 0; c < 3; ++c) {
-      const int u = 3 * map_.displacement_block[node] + c;
-      if (held_[u]) result.force[node][c] = internal[u] - end_force_[u];
-      const int r = 3 * map_.rotation_block[node] + c;
-      if (r >= 0 && held_[r]) result.moment[node][c] = internal[r] - end_force_[r];
-    }
+System::NodalForces System::reactions() const {
+  const auto residual = out_of_balance();
+  NodalForces result{Points(model_.nodes.size(), Vec3::Zero()), Points(model_.nodes.size(), Vec3::Zero())};
+  const auto held_part = [&](int block) -> Vec3 {
+    Vec3 value = Vec3::Zero();
+    for (int c = 0; c < 3; ++c)
+      if (held()[static_cast<std::size_t>(3 * block + c)])
+        value[c] = residual[static_cast<std::size_t>(3 * block + c)];
+    return kinematics_.frame(block) * value;
+  };
+  for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
+    if (map_.displacement_block[node] >= 0) result.force[node] = held_part(map_.displacement_block[node]);
+    const int link = kinematics_.link_of(static_cast<int>(node));
+    const bool is_hinge = link >= 0 && !model_.links[static_cast<std::size_t>(link)].rotation_free;
+    if (map_.rotation_block[node] >= 0 && !is_hinge)
+      result.moment[node] = held_part(map_.rotation_block[node]);
+  }
+  for (const auto& constraint : model_.constraints) {  // what holds it is no support
+    const auto& first = constraint.terms.front();
+    result.force[first.node][first.component] = 0;
+  }
   return result;
 }
 
 System::NodalField System::nodal(const la::Vector& x) const {
   std::vector<double> all;
   x.gather(all);
-  NodalField field{Points(model_.nodes.size(), Vec3::Zero()), Points(model_.nodes.size(), Vec3::Zero())};
+  const auto sum = [&](const std::vector<Dependence>& list) {
+    Vec3 value = Vec3::Zero();
+    for (const auto& d : list)
+      value += d.matrix * Eigen::Map<const Vec3>(&all[static_cast<std::size_t>(3 * d.block)]);
+    return value;
+  };
+  NodalField field{Points(model_.nodes.size()), Points(model_.nodes.size())};
   for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
-    field.displacement[node] = Eigen::Map<const Vec3>(&all[3 * map_.displacement_block[node]]);
-    if (map_.rotation_block[node] >= 0)
-      field.rotation[node] = Eigen::Map<const Vec3>(&all[3 * map_.rotation_block[node]]);
+    field.displacement[node] = sum(kinematics_.displacement(static_cast<int>(node)));
+    field.rotation[node] = sum(kinematics_.rotation(static_cast<int>(node)));
   }
   return field;
 }

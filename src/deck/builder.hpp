@@ -3,6 +3,7 @@
 /// Declares blocks of keys bound to the members of an options struct. Types and defaults are taken from the
 /// struct.
 
+#include <array>
 #include <concepts>
 #include <deck/keyword.hpp>
 #include <deck/reader.hpp>
@@ -81,6 +82,15 @@ struct Binding<Vec3> {
     return reader.vector(keyword, node);
   }
   static std::string text(const Vec3&) { return {}; }
+};
+
+template <>
+struct Binding<std::array<double, 2>> {
+  static constexpr Type type = Type::pair;
+  static auto read(Reader& reader, const Keyword& keyword, const Node& node) {
+    return reader.pair(keyword, node);
+  }
+  static std::string text(const std::array<double, 2>&) { return {}; }
 };
 
 /// The part of the owner that holds the options: the owner itself, an alternative of a variant, or of its

@@ -49,7 +49,7 @@ class GroupCheck {
   }
 
   void check_node_set(const Entry& entry) {
-    const Node* nodes = entry.value.find("nodes");
+    const Node* nodes = entry.value.find(entry.value.find("nodes") != nullptr ? "nodes" : "edges");
     if (nodes == nullptr) return;
     if (names_.defines(entry.key))
       reader_.complain(entry.place,
@@ -57,7 +57,10 @@ class GroupCheck {
                        "in groups", "expected \"section\"");
     if (root_.find("reflector") != nullptr || root_.at({"model", "mesh"}) != nullptr)
       reader_.complain(
-          nodes->label, "\"nodes\" needs nodes with names", context(entry.key),
+          nodes->label,
+          fmt::format("\"{}\" needs nodes with names",
+                      entry.value.find("nodes") != nullptr ? "nodes" : "edges"),
+          context(entry.key),
           "expected a model with inline nodes; a reflector and a mesh file bring their own groups");
   }
 
@@ -74,16 +77,23 @@ class GroupCheck {
                        context(entry.key));
     }
     for (const auto& [key, place, value] : entry.value.entries) {
-      const Member home = key == "prestress"     ? Member::membrane
-                          : key == "orientation" ? Member::beam
-                                                 : Member::cable;
-      if (key != "prestress" && key != "orientation" && !contains(initial_states(), key)) continue;
-      if (home == *member) continue;
+      const auto homes = homes_of_key(key);
+      if (homes.empty() || std::find(homes.begin(), homes.end(), *member) != homes.end()) continue;
       reader_.complain(place,
-                       fmt::format("\"{}\" is for {}, but group \"{}\" is made of {}", key, to_string(home),
-                                   entry.key, to_string(*member)),
+                       fmt::format("\"{}\" is for {}, but group \"{}\" is made of {}", key,
+                                   to_string(homes.front()), entry.key, to_string(*member)),
                        context(entry.key));
     }
+  }
+
+  /// What a key of a group is for; nothing where it is for every group.
+  static std::vector<Member> homes_of_key(const std::string& key) {
+    if (key == "prestress" || key == "initial_stress") return {Member::membrane, Member::shell};
+    if (key == "orientation") return {Member::beam, Member::membrane, Member::shell};
+    if (key.rfind("release_", 0) == 0 || key.rfind("offset_", 0) == 0) return {Member::beam};
+    if (key == "tension" || key == "force_density") return {Member::cable, Member::bar};
+    if (contains(initial_states(), key)) return {Member::cable, Member::bar, Member::catenary};
+    return {};
   }
 
   static const std::string* state_of(const Node& group) {
@@ -94,8 +104,15 @@ class GroupCheck {
 
   /// A cable group has one initial state, unless form-finding supplies it.
   void check_state(const Entry& entry) {
-    if (names_.member(entry.key) != Member::cable) return;
+    const auto member = names_.member(entry.key);
+    if (member != Member::cable && member != Member::catenary) return;
     const std::string* state = state_of(entry.value);
+    if (member == Member::catenary) {
+      if (state == nullptr)
+        reader_.complain(entry.place, fmt::format("catenary group \"{}\" has no length", entry.key),
+                         "in groups", "expected exactly one of: unstressed_length, prestrain");
+      return;
+    }
     const bool supplied = is_supplied(entry.key);
     if (state == nullptr && !supplied)
       reader_.complain(entry.place, fmt::format("cable group \"{}\" has no initial state", entry.key),
@@ -141,7 +158,9 @@ class GroupCheck {
     for (const auto& [name, place, section] : sections->entries) {
       const Node* kind = section.find("kind");
       const Node* material = section.find("material");
-      if (kind == nullptr || material == nullptr || kind->text == "cable" ||
+      const bool needs_no_ratio =
+          kind != nullptr && (kind->text == "cable" || kind->text == "bar" || kind->text == "catenary");
+      if (kind == nullptr || material == nullptr || needs_no_ratio ||
           section_blocks().find(kind->text) == nullptr)
         continue;
       const Node* block = root_.at({"materials", material->text});

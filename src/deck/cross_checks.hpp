@@ -15,8 +15,11 @@
 
 namespace tautline::deck {
 
-enum class Member { cable, beam, membrane };
+using Member = model::ElementKind;
+/// "cables", "beams", ...
 std::string to_string(Member member);
+/// Cable, bar or catenary.
+bool is_line_with_state(Member member);
 
 /// The names of a deck, as far as they can be known without building the structure.
 class Names {

@@ -111,11 +111,19 @@ std::string Keyword::expectation() const {
     case Type::vector:
       return with_range("three numbers [x, y, z]", *this);
     case Type::directions:
-      return "all, pinned, or a list of x, y, z, rx, ry, rz";
+      return "all, pinned, symmetry, or a list of x, y, z, rx, ry, rz";
+    case Type::pair:
+      return with_range("a number, or two numbers [first, second]", *this);
+    case Type::releases:
+      return "all, or a list of torsion, bending_2, bending_3";
+    case Type::edges:
+      return "a list of [node, node]";
+    case Type::terms:
+      return "a list of [node, direction, coefficient]";
     case Type::coordinates:
       return with_range("node names, each with [x, y, z]", *this);
     case Type::elements:
-      return "group names, each with a list of elements [node, node] or [node, node, node]";
+      return "group names, each with a list of elements [node, ...] of 1 to 4 nodes";
     case Type::counts:
       return "group names, each with a whole number >= 1";
     case Type::parameters:

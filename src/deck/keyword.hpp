@@ -26,7 +26,11 @@ enum class Type {
   choice,       ///< one of `choices`
   names,        ///< a list of names, or one name
   vector,       ///< [x, y, z]
-  directions,   ///< all, pinned, or a list of x, y, z, rx, ry, rz
+  pair,         ///< one number for both, or [first, second]
+  directions,   ///< all, pinned, symmetry, or a list of x, y, z, rx, ry, rz
+  releases,     ///< all, or a list of torsion, bending_2, bending_3
+  edges,        ///< list of [node, node]
+  terms,        ///< list of [node, direction, coefficient]
   coordinates,  ///< node name: [x, y, z]
   elements,     ///< group: list of lists of node names
   counts,       ///< name: whole number

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 #include <deck/builder.hpp>
 #include <deck/keywords.hpp>
 #include <tautline/core/text.hpp>
@@ -13,14 +14,15 @@ using Options = model::GroupOptions;
 /// A group is a section with its state or a set of nodes; a cable has one initial state.
 void check_group(Reader& reader, const Node& node, Options& options) {
   const Node* section = node.find("section");
-  const Node* nodes = node.find("nodes");
-  const std::string ways = "expected \"section\" for a group of elements or \"nodes\" for a set of nodes";
+  const Node* nodes = node.find("nodes") != nullptr ? node.find("nodes") : node.find("edges");
+  const std::string ways =
+      "expected \"section\" for a group of elements, or \"nodes\" or \"edges\" for a set of nodes";
   if (section == nullptr && nodes == nullptr)
-    reader.complain(node.label, "missing key \"section\" or \"nodes\"", reader.context(), ways);
+    reader.complain(node.label, "missing key \"section\", \"nodes\" or \"edges\"", reader.context(), ways);
   const BlockSet& set = group_blocks();
   if (nodes != nullptr)
     for (const auto& entry : node.entries)
-      if (entry.key != "nodes" && set.alternatives.front().find(entry.key) != nullptr)
+      if (entry.key != "nodes" && entry.key != "edges" && set.alternatives.front().find(entry.key) != nullptr)
         reader.complain(entry.place, fmt::format("\"{}\" does not fit a set of nodes", entry.key),
                         reader.context(), ways);
   if (options.orientation && options.orientation->isZero())
@@ -39,6 +41,47 @@ void check_group(Reader& reader, const Node& node, Options& options) {
   }
 }
 
+void read_edges(Reader& reader, const Keyword& keyword, const Node& node, Options& options) {
+  if (!reader.expect(Node::Kind::sequence, keyword, node)) return;
+  for (const auto& item : node.items) {
+    if (!reader.expect(Node::Kind::sequence, keyword, item)) continue;
+    if (item.items.size() != 2 || !item.items[0].is_scalar() || !item.items[1].is_scalar()) {
+      reader.complain(item, "an edge is no pair of nodes", "expected [node, node]");
+      continue;
+    }
+    for (const auto& end : item.items) reader.refer("node", end);
+    options.edges.push_back({item.items[0].text, item.items[1].text});
+  }
+}
+
+/// all, or a list of what is free.
+std::optional<model::EndRelease> read_release(Reader& reader, const Keyword& keyword, const Node& node) {
+  static const std::vector<std::string> words{"torsion", "bending_2", "bending_3"};
+  model::EndRelease release;
+  if (node.is_scalar()) {
+    if (node.text == "all") return model::EndRelease{{true, true, true}};
+    reader.wrong_value(keyword, node, "is no known release", did_you_mean(node.text, {"all"}));
+    return {};
+  }
+  if (!reader.expect(Node::Kind::sequence, keyword, node)) return {};
+  for (const auto& item : node.items) {
+    const auto found = std::find(words.begin(), words.end(), item.text);
+    if (found == words.end())
+      reader.complain(item, fmt::format("unknown release \"{}\"", item.text),
+                      "expected any of: " + join(words), did_you_mean(item.text, words));
+    else
+      release.free[static_cast<std::size_t>(found - words.begin())] = true;
+  }
+  return release;
+}
+
+template <class Member>
+auto release_reader(Member member) {
+  return [member](Reader& reader, const Keyword& keyword, const Node& node, Options& options) {
+    if (const auto release = read_release(reader, keyword, node)) options.*member = *release;
+  };
+}
+
 Block make_group() {
   BlockBuilder<Options> b("groups", "",
                           "Section and initial state of a group of elements, or a named set of nodes.");
@@ -46,11 +89,16 @@ Block make_group() {
   b.key("nodes", &Options::nodes)
       .refers("node")
       .says("Instead of `section`: names of nodes, for supports and loads.");
+  b.custom("edges", Type::edges, read_edges)
+      .says(
+          "Instead of `section`: sides of membranes or shells by their nodes, for supports and line loads; "
+          "they are "
+          "divided with the facets.");
   b.key("tension", &Options::tension)
       .in("N")
       .at_least(0)
       .also_called({"force", "pretension"})
-      .says("Cables: initial tension.");
+      .says("Cables and bars: initial tension.");
   b.key("unstressed_length", &Options::unstressed_length)
       .in("m")
       .above(0)
@@ -67,9 +115,31 @@ Block make_group() {
   b.key("prestress", &Options::prestress)
       .in("N/m")
       .at_least(0)
-      .says("Membranes: initial tension per width, the same in all directions.");
+      .says(
+          "Membranes and shells: initial tension per width, the same in all directions, or along axes 1 and "
+          "2.");
+  b.key("initial_stress", &Options::initial_stress)
+      .in("Pa")
+      .says("Membranes and shells: instead of `prestress`, the stress; the section has a thickness.");
   b.key("orientation", &Options::orientation)
-      .says("Beams: local axis 3 lies in the plane of the beam and this vector.");
+      .says(
+          "Beams: local axis 3 lies in the plane of the beam and this vector. Membranes and shells: axis 1 "
+          "of "
+          "orthotropic material and of unequal prestress is its projection on them.");
+  b.custom("release_start", Type::releases, release_reader(&Options::release_start))
+      .says(
+          "Beams: rotations free at the first node: all (a ball joint), or a list of torsion, bending_2, "
+          "bending_3.");
+  b.custom("release_end", Type::releases, release_reader(&Options::release_end))
+      .says("Beams: rotations free at the second node.");
+  b.key("offset_start", &Options::offset_start)
+      .in("m")
+      .by_default("[0, 0, 0]")
+      .says("Beams: from the first node to where the beam begins, a rigid arm.");
+  b.key("offset_end", &Options::offset_end)
+      .in("m")
+      .by_default("[0, 0, 0]")
+      .says("Beams: from the second node to where the beam ends, a rigid arm.");
   b.check(check_group);
   return b.take();
 }

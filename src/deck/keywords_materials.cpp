@@ -26,6 +26,10 @@ Block make_material() {
       .required()
       .also_called({"rho"})
       .says("Density.");
+  b.key("thermal_expansion", &Options::thermal_expansion)
+      .in("1/K")
+      .also_called({"alpha", "cte"})
+      .says("Coefficient of thermal expansion.");
   return b.take();
 }
 

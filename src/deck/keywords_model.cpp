@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <deck/builder.hpp>
 #include <deck/keywords.hpp>
 #include <set>
@@ -22,7 +23,7 @@ void read_nodes(Reader& reader, const Keyword& keyword, const Node& node, Option
   }
 }
 
-/// One element: two or three different node names.
+/// One element: one to four different node names.
 void read_element(Reader& reader, const Keyword& keyword, const Node& node,
                   std::vector<std::vector<std::string>>& list) {
   if (!reader.expect(Node::Kind::sequence, keyword, node)) return;
@@ -35,9 +36,9 @@ void read_element(Reader& reader, const Keyword& keyword, const Node& node,
       reader.complain(item, fmt::format("node \"{}\" stands twice in one element", item.text));
     names.push_back(item.text);
   }
-  if (names.size() < 2 || names.size() > 3)
-    reader.complain(node, fmt::format("an element of {} node{}", names.size(), names.size() == 1 ? "" : "s"),
-                    "expected 2 nodes for a cable or beam, 3 for a membrane");
+  if (names.empty() || names.size() > 4)
+    reader.complain(node, fmt::format("an element of {} nodes", names.size()),
+                    "expected 2 nodes for a cable or beam, 3 or 4 for a membrane or shell, 1 for a mass");
   list.push_back(std::move(names));
 }
 
@@ -58,6 +59,72 @@ void read_elements(Reader& reader, const Keyword& keyword, const Node& node, Opt
       reader.complain(entry.value, fmt::format("group \"{}\" has no elements", entry.key));
     options.elements.push_back(std::move(elements));
   }
+}
+
+/// [[node, direction, coefficient], ...]
+void read_terms(Reader& reader, const Keyword& keyword, const Node& node, model::ConstraintOptions& options) {
+  static const std::vector<std::string> directions{"x", "y", "z"};
+  if (!reader.expect(Node::Kind::sequence, keyword, node)) return;
+  Keyword number = keyword;
+  number.type = Type::number;
+  number.name = "coefficient";
+  for (const auto& item : node.items) {
+    if (!item.is_sequence() || item.items.size() != 3) {
+      reader.complain(item, "a term is no [node, direction, coefficient]", "e.g. [tip, x, -1]");
+      continue;
+    }
+    model::ConstraintTermOptions term;
+    reader.refer("node", item.items[0]);
+    term.node = item.items[0].text;
+    const auto found = std::find(directions.begin(), directions.end(), item.items[1].text);
+    if (found == directions.end()) {
+      reader.complain(item.items[1], fmt::format("unknown direction \"{}\"", item.items[1].text),
+                      "expected x, y or z");
+      continue;
+    }
+    term.component = static_cast<int>(found - directions.begin());
+    const auto value = reader.number(number, item.items[2]);
+    if (value && *value == 0) reader.complain(item.items[2], "a coefficient of 0 says nothing");
+    term.coefficient = value.value_or(1);
+    options.terms.push_back(std::move(term));
+  }
+  if (options.terms.size() < 2)
+    reader.complain(node, "a linear constraint needs at least two terms", {},
+                    "a support holds a single direction");
+}
+
+const BlockSet& constraint_blocks() {
+  static const BlockSet set = [] {
+    BlockBuilder<model::ConstraintOptions> b("model.constraints", "",
+                                             "A linear constraint: the sum of its terms is zero.");
+    b.custom("terms", Type::terms, read_terms)
+        .required()
+        .says("Terms [node, direction, coefficient]; the displacement of the first follows from the others.");
+    return BlockSet{"model.constraints", "Linear constraints.", {b.take()}, {}};
+  }();
+  return set;
+}
+
+const BlockSet& cyclic_blocks() {
+  using Cyclic = model::CyclicOptions;
+  static const BlockSet set = [] {
+    BlockBuilder<Cyclic> b("model.cyclic", "",
+                           "Two faces of a sector: the nodes of one move as those of the other, turned.");
+    b.key("from", &Cyclic::from).required().refers("group").says("Nodes that lead.");
+    b.key("to", &Cyclic::to).required().refers("group").says("Nodes that follow, one at each turned place.");
+    b.key("angle", &Cyclic::angle)
+        .in("degree")
+        .required()
+        .says("Angle from the leading to the following face.");
+    b.key("axis", &Cyclic::axis).by_default("[0, 0, 1]").says("Direction of the axis.");
+    b.key("centre", &Cyclic::centre).in("m").by_default("[0, 0, 0]").says("A point of the axis.");
+    b.check([](Reader& reader, const Node& node, Cyclic& o) {
+      if (o.axis.isZero(0))
+        reader.complain(*node.find("axis"), "axis has no direction", "expected a vector that is not zero");
+    });
+    return BlockSet{"model.cyclic", "Cyclic symmetry.", {b.take()}, {}};
+  }();
+  return set;
 }
 
 void check_model(Reader& reader, const Node& node, Options& options) {
@@ -81,11 +148,17 @@ Block make_model() {
   BlockBuilder<Options> b("model", "", "A structure of named nodes and elements, or a mesh file.");
   b.custom("nodes", Type::coordinates, read_nodes).in("m").says("Coordinates of each node, by its name.");
   b.custom("elements", Type::elements, read_elements)
-      .says("Elements of each group as lists of node names: 2 for cables and beams, 3 for membranes.");
+      .says(
+          "Elements of each group as lists of node names: 1 for masses and springs to the ground, 2 for "
+          "cables, "
+          "bars, beams, links and springs, 3 or 4 in order around membranes and shells.");
   b.key("mesh", &Options::mesh_file)
       .says(
           "Instead of nodes and elements: a gmsh file (.msh), relative to the deck's folder. Its physical "
           "groups are the groups.");
+  b.list("constraints", &Options::constraints, constraint_blocks())
+      .says("Linear constraints between displacements.");
+  b.list("cyclic", &Options::cyclic, cyclic_blocks()).says("Cyclic symmetry between two faces of a sector.");
   b.check(check_model);
   return b.take();
 }

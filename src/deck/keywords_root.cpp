@@ -54,7 +54,7 @@ Block make_root() {
   b.map("materials", &Deck::materials, material_blocks()).says("Materials by name.");
   b.map("sections", &Deck::sections, section_blocks())
       .required()
-      .says("Sections of cables, beams and membranes by name.");
+      .says("Sections of cables, beams, membranes, shells and other elements by name.");
   b.map("groups", &Deck::groups, group_blocks())
       .required()
       .says(

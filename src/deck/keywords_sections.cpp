@@ -40,11 +40,10 @@ void check_either(Reader& reader, const Node& node, const std::vector<std::strin
                     "expected exactly one of them");
 }
 
-Block make_cable() {
-  using Options = CableSectionOptions;
-  BlockBuilder<SectionOptions, Options> b("sections.cable", "cable",
-                                          "A cord: tension only. Either axial_stiffness and mass_per_length, "
-                                          "or a material with diameter or area.");
+/// Cable, bar and catenary are told alike.
+template <class Options>
+Block make_axial(const std::string& kind, const std::string& sentence) {
+  BlockBuilder<SectionOptions, Options> b("sections." + kind, kind, sentence);
   b.key("material", &Options::material).refers("material").says("Material; needs `diameter` or `area`.");
   b.key("diameter", &Options::diameter).in("m").above(0).says("Diameter of the full circular section.");
   b.key("area", &Options::area).in("m^2").above(0).also_called({"A"}).says("Area of the section.");
@@ -56,12 +55,35 @@ Block make_cable() {
   b.key("mass_per_length", &Options::mass_per_length)
       .in("kg/m")
       .at_least(0)
-      .says("Mass per length; 0 for a massless cord.");
+      .says("Mass per unstressed length; 0 for a massless cord.");
+  b.key("thermal_expansion", &Options::thermal_expansion)
+      .in("1/K")
+      .by_default("the material's, or 0")
+      .says("Coefficient of thermal expansion.");
   b.check([](Reader& reader, const Node& node, Options&) {
     check_either(reader, node, {"axial_stiffness", "mass_per_length"}, {"diameter", "area"},
                  "(diameter or area)");
   });
   return b.take();
+}
+
+Block make_cable() {
+  return make_axial<CableSectionOptions>("cable",
+                                         "A cord: tension only. Either axial_stiffness and mass_per_length, "
+                                         "or a material with diameter or area.");
+}
+
+Block make_bar() {
+  return make_axial<BarSectionOptions>(
+      "bar",
+      "A straight bar, hinged at its ends: tension and compression. Given like a "
+      "cable.");
+}
+
+Block make_catenary() {
+  return make_axial<CatenarySectionOptions>("catenary",
+                                            "A whole hanging cable as one element, sagging under its own "
+                                            "weight. Given like a cable.");
 }
 
 Block make_rectangle() {
@@ -86,6 +108,14 @@ Block make_round() {
   return b.take();
 }
 
+/// The wall of a tube leaves something inside.
+void check_wall(Reader& reader, const Node& node, const char* key, double thickness, double diameter) {
+  const Node* wall = node.find(key);
+  if (wall == nullptr || diameter <= 0 || thickness < diameter) return;
+  reader.complain(*wall, fmt::format("{} = {} leaves no tube", key, format_number(thickness)),
+                  fmt::format("expected less than the mean diameter = {} [m]", format_number(diameter)));
+}
+
 Block make_tube() {
   using Options = TubeSectionOptions;
   BlockBuilder<SectionOptions, Options> b("sections.tube", "tube", "A beam of circular tube.");
@@ -98,13 +128,111 @@ Block make_tube() {
       .says("Thickness of the wall; less than the diameter.");
   b.key("shear_flexible", &Options::shear_flexible)
       .says("Whether the beam shears (Timoshenko) or is rigid in shear.");
-  b.check([](Reader& reader, const Node& node, Options& options) {
-    const Node* wall = node.find("thickness");
-    if (wall == nullptr || options.diameter <= 0 || options.thickness < options.diameter) return;
-    reader.complain(
-        *wall, fmt::format("thickness = {} leaves no tube", format_number(options.thickness)),
-        fmt::format("expected less than the mean diameter = {} [m]", format_number(options.diameter)));
+  b.check([](Reader& reader, const Node& node, Options& o) {
+    check_wall(reader, node, "thickness", o.thickness, o.diameter);
   });
+  return b.take();
+}
+
+Block make_tapered_tube() {
+  using Options = TaperedTubeSectionOptions;
+  BlockBuilder<SectionOptions, Options> b(
+      "sections.tapered_tube", "tapered_tube",
+      "A beam of circular tube whose dimensions change linearly from its first "
+      "to its second node; divide it with a `mesh` step.");
+  b.key("material", &Options::material).required().refers("material").says("Material.");
+  b.key("diameter_start", &Options::diameter_start)
+      .in("m")
+      .above(0)
+      .required()
+      .says("Mean diameter at the first node.");
+  b.key("diameter_end", &Options::diameter_end)
+      .in("m")
+      .above(0)
+      .required()
+      .says("Mean diameter at the second node.");
+  b.key("thickness_start", &Options::thickness_start)
+      .in("m")
+      .above(0)
+      .required()
+      .says("Wall at the first node.");
+  b.key("thickness_end", &Options::thickness_end)
+      .in("m")
+      .above(0)
+      .required()
+      .says("Wall at the second node.");
+  b.key("shear_flexible", &Options::shear_flexible)
+      .says("Whether the beam shears (Timoshenko) or is rigid in shear.");
+  b.check([](Reader& reader, const Node& node, Options& o) {
+    check_wall(reader, node, "thickness_start", o.thickness_start, o.diameter_start);
+    check_wall(reader, node, "thickness_end", o.thickness_end, o.diameter_end);
+  });
+  return b.take();
+}
+
+Block make_i() {
+  using Options = ISectionOptions;
+  BlockBuilder<SectionOptions, Options> b("sections.i", "i",
+                                          "A beam of I section with equal flanges: web along local axis 3.");
+  b.key("material", &Options::material).required().refers("material").says("Material.");
+  b.key("height", &Options::height)
+      .in("m")
+      .above(0)
+      .required()
+      .says("Height over both flanges, along local axis 3.");
+  b.key("width", &Options::width)
+      .in("m")
+      .above(0)
+      .required()
+      .says("Width of the flanges, along local axis 2.");
+  b.key("web_thickness", &Options::web_thickness).in("m").above(0).required().says("Thickness of the web.");
+  b.key("flange_thickness", &Options::flange_thickness)
+      .in("m")
+      .above(0)
+      .required()
+      .says("Thickness of a flange.");
+  b.key("shear_flexible", &Options::shear_flexible)
+      .says("Whether the beam shears (Timoshenko) or is rigid in shear.");
+  b.check([](Reader& reader, const Node& node, Options& o) {
+    if (const Node* flange = node.find("flange_thickness");
+        flange != nullptr && 2 * o.flange_thickness >= o.height)
+      reader.complain(*flange, "the flanges leave no web", "expected less than half of the height");
+    if (const Node* web = node.find("web_thickness"); web != nullptr && o.web_thickness > o.width)
+      reader.complain(*web, "the web is wider than the flanges", "expected at most the width");
+  });
+  return b.take();
+}
+
+Block make_general() {
+  using Options = GeneralSectionOptions;
+  BlockBuilder<SectionOptions, Options> b("sections.general", "general",
+                                          "A beam given by area and second moments, with a material.");
+  b.key("material", &Options::material).required().refers("material").says("Material.");
+  b.key("area", &Options::area).in("m^2").above(0).required().also_called({"A"}).says("Area of the section.");
+  b.key("inertia_2", &Options::inertia_2)
+      .in("m^4")
+      .above(0)
+      .required()
+      .also_called({"I2", "Iy"})
+      .says("Second moment of area about local axis 2.");
+  b.key("inertia_3", &Options::inertia_3)
+      .in("m^4")
+      .above(0)
+      .required()
+      .also_called({"I3", "Iz"})
+      .says("Second moment of area about local axis 3.");
+  b.key("torsion", &Options::torsion)
+      .in("m^4")
+      .above(0)
+      .required()
+      .also_called({"J"})
+      .says("Torsion constant.");
+  b.key("shear_factor_2", &Options::shear_factor_2)
+      .at_least(0)
+      .says("Part of the area that shears along local axis 2; 0: rigid in shear.");
+  b.key("shear_factor_3", &Options::shear_factor_3)
+      .at_least(0)
+      .says("Part of the area that shears along local axis 3; 0: rigid in shear.");
   return b.take();
 }
 
@@ -154,6 +282,7 @@ Block make_beam() {
       .in("kg m")
       .at_least(0)
       .says("Rotary inertia per length about local axis 3.");
+  b.key("thermal_expansion", &Options::thermal_expansion).in("1/K").says("Coefficient of thermal expansion.");
   return b.take();
 }
 
@@ -178,9 +307,105 @@ Block make_membrane() {
       .in("kg/m^2")
       .at_least(0)
       .says("Mass per area; 0 for massless cloth.");
+  b.key("tension_stiffness_2", &Options::tension_stiffness_2)
+      .in("N/m")
+      .above(0)
+      .says("Orthotropic cloth: tension stiffness along axis 2; the other values are then along axis 1.");
+  b.key("shear_stiffness", &Options::shear_stiffness)
+      .in("N/m")
+      .above(0)
+      .also_called({"Gh"})
+      .says("Orthotropic cloth: in-plane shear stiffness G h.");
+  b.key("thermal_expansion", &Options::thermal_expansion)
+      .in("1/K")
+      .by_default("the material's, or 0")
+      .says("Coefficient of thermal expansion, along axis 1 of orthotropic cloth.");
+  b.key("thermal_expansion_2", &Options::thermal_expansion_2)
+      .in("1/K")
+      .by_default("as along axis 1")
+      .says("Orthotropic cloth: coefficient of thermal expansion along axis 2.");
+  b.key("wrinkling", &Options::wrinkling)
+      .says("Whether the cloth wrinkles instead of carrying compression (tension field).");
   b.check([](Reader& reader, const Node& node, Options&) {
     check_either(reader, node, {"tension_stiffness", "poisson_ratio", "mass_per_area"}, {"thickness"},
                  "thickness");
+    const Node *second = node.find("tension_stiffness_2"), *shear = node.find("shear_stiffness");
+    if ((second == nullptr) != (shear == nullptr))
+      reader.complain(node.label,
+                      fmt::format("missing key \"{}\"", second ? "shear_stiffness" : "tension_stiffness_2"),
+                      reader.context(), "expected tension_stiffness_2 and shear_stiffness together");
+  });
+  return b.take();
+}
+
+Block make_shell() {
+  using Options = ShellSectionOptions;
+  BlockBuilder<SectionOptions, Options> b(
+      "sections.shell", "shell", "A shell of uniform thickness: membrane, bending and transverse shear.");
+  b.key("material", &Options::material).required().refers("material").says("Material.");
+  b.key("thickness", &Options::thickness).in("m").above(0).required().says("Thickness.");
+  b.key("shear_factor", &Options::shear_factor).above(0).at_most(1).says("Shear correction factor.");
+  return b.take();
+}
+
+Block make_spring() {
+  using Options = SpringSectionOptions;
+  BlockBuilder<SectionOptions, Options> b(
+      "sections.spring", "spring",
+      "A spring between two nodes at the same place, or from one node to the "
+      "ground. With rotational stiffness its axes turn with its first node.");
+  b.key("stiffness", &Options::stiffness)
+      .in("N/m")
+      .at_least(0)
+      .by_default("[0, 0, 0]")
+      .says("Stiffness along x, y, z.");
+  b.key("rotational_stiffness", &Options::rotational_stiffness)
+      .in("N m/rad")
+      .at_least(0)
+      .by_default("[0, 0, 0]")
+      .says("Stiffness about x, y, z.");
+  b.check([](Reader& reader, const Node& node, Options& o) {
+    if (o.stiffness.isZero(0) && o.rotational_stiffness.isZero(0))
+      reader.complain(node.label, "a spring without stiffness", reader.context(),
+                      "expected stiffness or rotational_stiffness above 0");
+  });
+  return b.take();
+}
+
+Block make_mass() {
+  using Options = MassSectionOptions;
+  BlockBuilder<SectionOptions, Options> b("sections.mass", "mass", "A mass at a node.");
+  b.key("mass", &Options::mass).in("kg").at_least(0).required().says("Mass of each.");
+  b.key("inertia", &Options::inertia)
+      .in("kg m^2")
+      .at_least(0)
+      .by_default("[0, 0, 0]")
+      .says("Moments of inertia about x, y, z.");
+  return b.take();
+}
+
+Block make_rigid_link() {
+  using Options = RigidLinkSectionOptions;
+  BlockBuilder<SectionOptions, Options> b(
+      "sections.rigid_link", "rigid_link",
+      "A rigid arm from the first node of each element, which leads, to the "
+      "second, which follows.");
+  b.key("rotation", &Options::rotation).says("Whether the second node turns with the arm, or freely.");
+  return b.take();
+}
+
+Block make_hinge() {
+  using Options = HingeSectionOptions;
+  BlockBuilder<SectionOptions, Options> b(
+      "sections.hinge", "hinge",
+      "The second node of each element stays where the first is, or at the end "
+      "of a rigid arm from there, and turns against it.");
+  b.key("axis", &Options::axis)
+      .by_default("none: a ball joint")
+      .says("Axis about which it turns, fixed in the first node.");
+  b.check([](Reader& reader, const Node& node, Options& o) {
+    if (o.axis && o.axis->isZero(0))
+      reader.complain(*node.find("axis"), "axis has no direction", "expected a vector that is not zero");
   });
   return b.take();
 }
@@ -191,7 +416,9 @@ const BlockSet& section_blocks() {
   static const BlockSet set{
       "sections",
       "Sections by name; `kind` says of what.",
-      {make_cable(), make_rectangle(), make_round(), make_tube(), make_beam(), make_membrane()},
+      {make_cable(), make_bar(), make_catenary(), make_rectangle(), make_round(), make_tube(),
+       make_tapered_tube(), make_i(), make_general(), make_beam(), make_membrane(), make_shell(),
+       make_spring(), make_mass(), make_rigid_link(), make_hinge()},
       {}};
   return set;
 }

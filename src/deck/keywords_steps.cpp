@@ -129,6 +129,12 @@ Block make_equilibrium() {
       .by_default("all loads of the deck")
       .says("Loads ramped up in the last stage, which act from then on; an empty list: none.");
   b.key("reset", &Options::reset).says("Start again from the reference configuration.");
+  b.key("increments", &Options::increments)
+      .at_least(1)
+      .says("The loads of the last stage come on in at least so many equal parts.");
+  b.key("monitor", &Options::monitor)
+      .refers("group")
+      .says("Groups or selections whose mean displacement and rotation are reported after each part.");
   return b.take();
 }
 
@@ -206,6 +212,10 @@ Block make_modal() {
   auto b = step<ModalOptions>("modal",
                               "Natural frequencies and modes about the present state, with its prestress.");
   b.key("modes", &ModalOptions::modes).at_least(1).says("Number of modes, from the lowest frequency.");
+  b.choice("mass", &ModalOptions::mass,
+           std::vector<std::pair<std::string, assembly::MassKind>>{
+               {"consistent", assembly::MassKind::consistent}, {"lumped", assembly::MassKind::lumped}})
+      .says("Mass matrix: consistent with the shape functions, or lumped at the nodes.");
   return b.take();
 }
 

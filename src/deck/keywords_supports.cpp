@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <deck/builder.hpp>
 #include <deck/keywords.hpp>
 #include <tautline/core/text.hpp>
@@ -11,15 +12,19 @@ namespace {
 
 constexpr std::array<const char*, 6> directions{"x", "y", "z", "rx", "ry", "rz"};
 
-/// all, pinned, or a list of directions.
+/// all, pinned, symmetry, or a list of directions.
 void read_fix(Reader& reader, const Keyword& keyword, const Node& node, model::SupportOptions& options) {
   if (node.is_scalar() && (node.text == "all" || node.text == "pinned")) {
     for (std::size_t i = 0; i < 6; ++i) options.fixed[i] = i < 3 || node.text == "all";
     return;
   }
+  if (node.is_scalar() && node.text == "symmetry") {
+    options.fixed = {true, false, false, false, true, true};
+    return;
+  }
   if (node.is_scalar())
     return reader.wrong_value(keyword, node, "is no known support",
-                              did_you_mean(node.text, {"all", "pinned"}));
+                              did_you_mean(node.text, {"all", "pinned", "symmetry"}));
   if (!reader.expect(Node::Kind::sequence, keyword, node)) return;
   if (node.items.empty()) return reader.wrong_value(keyword, node, "is an empty list");
   options.fixed.fill(false);
@@ -39,6 +44,25 @@ void check_not_empty(Reader& reader, const Node& node) {
     reader.complain(*on, "\"on\" is an empty list", "expected at least one group or selection");
 }
 
+/// Axes from a first direction and a second in the plane of the first two.
+void set_axes(Reader& reader, const Node& node, model::SupportOptions& options) {
+  const Node *x = node.find("x_axis"), *y = node.find("y_axis");
+  if (x == nullptr) {
+    if (y != nullptr) reader.complain(y->label, "\"y_axis\" needs \"x_axis\"", reader.context());
+    return;
+  }
+  const Vec3 first = options.axes.col(0), second = options.axes.col(1);
+  if (first.isZero(0))
+    return reader.complain(*x, "x_axis has no direction", "expected a vector that is not zero");
+  const Vec3 e1 = first.normalized();
+  Vec3 across = y != nullptr ? second : Vec3::Unit(std::abs(e1[2]) < 0.9 ? 2 : 0).cross(e1);
+  across -= e1 * e1.dot(across);
+  if (across.norm() <= 1e-9 * second.norm())
+    return reader.complain(*y, "y_axis is parallel to x_axis", "expected another direction");
+  const Vec3 e2 = across.normalized();
+  options.axes << e1, e2, e1.cross(e2);
+}
+
 Block make_support() {
   using Options = model::SupportOptions;
   BlockBuilder<Options> b("supports", "", "Nodes that cannot move.");
@@ -46,32 +70,82 @@ Block make_support() {
   b.key("on", &Options::on).required().refers("group").says("Groups or selections whose nodes are fixed.");
   b.custom("fix", Type::directions, read_fix)
       .by_default("all")
-      .says("Fixed directions: all (displacements and rotations), pinned (x, y, z), or a list.");
-  b.check([](Reader& reader, const Node& node, Options&) { check_not_empty(reader, node); });
+      .says(
+          "Fixed directions: all (displacements and rotations), pinned (x, y, z), symmetry (x, ry, rz: a "
+          "plane of "
+          "symmetry normal to x), or a list.");
+  b.custom("x_axis", Type::vector,
+           [](Reader& reader, const Keyword& keyword, const Node& node, Options& options) {
+             if (const auto v = reader.vector(keyword, node)) options.axes.col(0) = *v;
+           })
+      .by_default("[1, 0, 0]")
+      .says("Direction that x means in `fix`.");
+  b.custom("y_axis", Type::vector,
+           [](Reader& reader, const Keyword& keyword, const Node& node, Options& options) {
+             if (const auto v = reader.vector(keyword, node)) options.axes.col(1) = *v;
+           })
+      .by_default("normal to x_axis, horizontal")
+      .says("A direction in the plane of x and y; needs `x_axis`.");
+  b.check([](Reader& reader, const Node& node, Options& options) {
+    check_not_empty(reader, node);
+    set_axes(reader, node, options);
+  });
   return b.take();
+}
+
+/// What a load can be, in the order of the table.
+const std::vector<std::string>& load_kinds() {
+  static const std::vector<std::string> words{
+      "force",       "moment",        "displacement", "rotation",           "line_force",
+      "line_moment", "surface_force", "pressure",     "temperature_change", "acceleration"};
+  return words;
 }
 
 void check_load(Reader& reader, const Node& node, model::LoadOptions&) {
   check_not_empty(reader, node);
-  const bool nodal = node.find("force") != nullptr || node.find("moment") != nullptr;
   const Node* acceleration = node.find("acceleration");
-  if (!nodal && acceleration == nullptr)
-    reader.complain(node.label, "missing key \"force\", \"moment\" or \"acceleration\"", reader.context(),
-                    "expected force or moment (with on), or acceleration");
-  if (nodal && node.find("on") == nullptr)
+  int given = 0;
+  for (const auto& word : load_kinds()) given += node.find(word) != nullptr;
+  if (given == 0)
+    reader.complain(node.label, "a load of nothing", reader.context(),
+                    "expected one of: " + join(load_kinds()));
+  const bool needs_place = given > (acceleration != nullptr ? 1 : 0);
+  if (needs_place && node.find("on") == nullptr)
     reader.complain(node.label, "missing key \"on\"", reader.context(),
-                    "expected the groups or selections whose nodes are loaded");
-  if (acceleration != nullptr && !nodal && node.find("on") != nullptr)
+                    "expected the groups or selections that are loaded");
+  if (acceleration != nullptr && !needs_place && node.find("on") != nullptr)
     reader.complain(*node.find("on"), "\"on\" has no effect: an acceleration acts on every mass");
 }
 
 Block make_load() {
   using Options = model::LoadOptions;
-  BlockBuilder<Options> b("loads", "", "A load, ramped up from zero; its direction stays.");
+  BlockBuilder<Options> b("loads", "", "A load, ramped up from zero; all but pressure keep their direction.");
   b.key("name", &Options::name).required().says("Name; steps refer to it.");
-  b.key("on", &Options::on).refers("group").says("Groups or selections whose nodes are loaded.");
+  b.key("on", &Options::on).refers("group").says("Groups or selections whose nodes or elements are loaded.");
   b.key("force", &Options::force).in("N").by_default("[0, 0, 0]").says("Force on each node.");
   b.key("moment", &Options::moment).in("N m").by_default("[0, 0, 0]").says("Moment on each node.");
+  b.key("displacement", &Options::displacement)
+      .in("m")
+      .says("How far each node is moved; a support must hold it in every direction that is not 0.");
+  b.key("rotation", &Options::rotation)
+      .in("rad")
+      .says("Rotation vector by which each node is turned, any number of turns; a support must hold it.");
+  b.key("line_force", &Options::line_force)
+      .in("N/m")
+      .says("Force per drawn length of beams, cables, bars and edges.");
+  b.key("line_moment", &Options::line_moment).in("N").says("Moment per drawn length of beams and edges.");
+  b.key("surface_force", &Options::surface_force)
+      .in("Pa")
+      .says("Force per drawn area of membranes and shells, of constant direction.");
+  b.key("pressure", &Options::pressure)
+      .in("Pa")
+      .says(
+          "Pressure on membranes and shells: along their normal by the order of their nodes, which it "
+          "follows.");
+  b.key("temperature_change", &Options::temperature_change)
+      .in("K")
+      .also_called({"temperature"})
+      .says("Change of temperature of the groups in `on`.");
   b.key("acceleration", &Options::acceleration)
       .in("m/s^2")
       .says("Acceleration that acts on every mass, e.g. gravity [0, 0, -9.81]; needs no `on`.");

@@ -40,7 +40,31 @@ std::vector<std::string> keys(const Node* node) {
 }  // namespace
 
 std::string to_string(Member member) {
-  return member == Member::cable ? "cables" : member == Member::beam ? "beams" : "membranes";
+  switch (member) {
+    case Member::cable:
+      return "cables";
+    case Member::bar:
+      return "bars";
+    case Member::catenary:
+      return "catenaries";
+    case Member::beam:
+      return "beams";
+    case Member::membrane:
+      return "membranes";
+    case Member::shell:
+      return "shells";
+    case Member::spring:
+      return "springs";
+    case Member::mass:
+      return "masses";
+    case Member::link:
+      return "links";
+  }
+  return {};
+}
+
+bool is_line_with_state(Member member) {
+  return member == Member::cable || member == Member::bar || member == Member::catenary;
 }
 
 Names::Names(const Deck& deck, const Node& root) : root_(root) {
@@ -74,7 +98,12 @@ std::optional<Member> Names::member(const std::string& group) const {
   if (section == nullptr || !section->is_scalar()) return {};
   const Node* kind = root_.at({"sections", section->text, "kind"});
   if (kind == nullptr || section_blocks().find(kind->text) == nullptr) return {};
-  return kind->text == "cable" ? Member::cable : kind->text == "membrane" ? Member::membrane : Member::beam;
+  static const std::map<std::string, Member> others{
+      {"cable", Member::cable},       {"bar", Member::bar},         {"catenary", Member::catenary},
+      {"membrane", Member::membrane}, {"shell", Member::shell},     {"spring", Member::spring},
+      {"mass", Member::mass},         {"rigid_link", Member::link}, {"hinge", Member::link}};
+  const auto found = others.find(kind->text);
+  return found == others.end() ? Member::beam : found->second;
 }
 
 void Names::collect() {
@@ -87,7 +116,7 @@ void Names::collect() {
   for (const auto& name : keys(root_.find("groups"))) {
     const auto what = member(name);
     if (what == Member::cable) known_["cable group"].push_back(name);
-    if (what == Member::cable || what == Member::beam) known_["line group"].push_back(name);
+    if (what && (is_line_with_state(*what) || what == Member::beam)) known_["line group"].push_back(name);
     if (root_.at({"groups", name, "section"}) == nullptr && !defines(name)) regions.push_back(name);
   }
   if (const Node* loads = root_.find("loads"))

@@ -5,6 +5,7 @@
 #include <deck/keyword.hpp>
 #include <deck/node.hpp>
 #include <deck/source.hpp>
+#include <array>
 #include <optional>
 #include <set>
 #include <string>
@@ -47,6 +48,7 @@ class Reader {
   std::optional<std::string> choice(const Keyword& keyword, const Node& node);
   std::optional<std::vector<std::string>> names(const Keyword& keyword, const Node& node);
   std::optional<Vec3> vector(const Keyword& keyword, const Node& node);
+  std::optional<std::array<double, 2>> pair(const Keyword& keyword, const Node& node);
   /// Whether the node has the form; complains if not.
   bool expect(Node::Kind kind, const Keyword& keyword, const Node& node);
 

@@ -114,6 +114,23 @@ std::optional<Vec3> Reader::vector(const Keyword& keyword, const Node& node) {
   return result;
 }
 
+std::optional<std::array<double, 2>> Reader::pair(const Keyword& keyword, const Node& node) {
+  if (node.is_scalar()) {
+    const auto both = number(keyword, node);
+    if (!both) return {};
+    return std::array{*both, *both};
+  }
+  if (!expect(Node::Kind::sequence, keyword, node)) return {};
+  if (node.items.size() != 2) {
+    wrong_value(keyword, node,
+                fmt::format("has {} number{}", node.items.size(), node.items.size() == 1 ? "" : "s"));
+    return {};
+  }
+  const auto first = number(keyword, node.items[0]), second = number(keyword, node.items[1]);
+  if (!first || !second) return {};
+  return std::array{*first, *second};
+}
+
 void Reader::refer(const std::string& kind, const Node& node) {
   if (!kind.empty()) references_.push_back({kind, node.text, node.place, node.note, context()});
 }

@@ -36,11 +36,16 @@ Json name_schema() {
   return {{"type", Json::array({"string", "number"})}};
 }
 
-Json vector_schema() {
-  Json list = list_of(or_parameter({{"type", "number"}}));
-  list["minItems"] = 3;
-  list["maxItems"] = 3;
+/// A list of `n` entries.
+Json tuple_of(Json items, int n) {
+  Json list = list_of(std::move(items));
+  list["minItems"] = n;
+  list["maxItems"] = n;
   return list;
+}
+
+Json vector_schema() {
+  return tuple_of(or_parameter({{"type", "number"}}), 3);
 }
 
 Json set_schema(const BlockSet& set) {
@@ -57,9 +62,19 @@ Json blocks_schema(const Keyword& keyword) {
 }
 
 Json directions_schema() {
-  return {{"anyOf", Json::array({{{"enum", {"all", "pinned"}}},
+  return {{"anyOf", Json::array({{{"enum", {"all", "pinned", "symmetry"}}},
                                  list_of({{"enum", {"x", "y", "z", "rx", "ry", "rz"}}}),
                                  {{"$ref", parameter}}})}};
+}
+
+Json releases_schema() {
+  return {{"anyOf",
+           Json::array({{{"enum", {"all"}}}, list_of({{"enum", {"torsion", "bending_2", "bending_3"}}})})}};
+}
+
+Json pair_schema(const Keyword& keyword) {
+  const Json number = number_schema(keyword, "number");
+  return {{"anyOf", Json::array({number, tuple_of(number, 2)})}};
 }
 
 Json value_schema(const Keyword& keyword) {
@@ -80,10 +95,18 @@ Json value_schema(const Keyword& keyword) {
       return vector_schema();
     case Type::directions:
       return directions_schema();
+    case Type::pair:
+      return pair_schema(keyword);
+    case Type::releases:
+      return releases_schema();
+    case Type::edges:
+      return list_of(tuple_of(name_schema(), 2));
+    case Type::terms:
+      return list_of(tuple_of(name_schema(), 3));
     case Type::coordinates:
       return map_of(vector_schema());
     case Type::elements:
-      return map_of(list_of({{"type", "array"}, {"items", name_schema()}, {"minItems", 2}, {"maxItems", 3}}));
+      return map_of(list_of({{"type", "array"}, {"items", name_schema()}, {"minItems", 1}, {"maxItems", 4}}));
     case Type::counts:
       return map_of(number_schema(keyword, "integer"));
     case Type::parameters:

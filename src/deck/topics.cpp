@@ -32,6 +32,14 @@ std::string type_text(const Keyword& keyword) {
       return "[x, y, z]";
     case Type::directions:
       return "word or list";
+    case Type::pair:
+      return "number or [first, second]";
+    case Type::releases:
+      return "word or list";
+    case Type::edges:
+      return "[[node, node], ...]";
+    case Type::terms:
+      return "[[node, direction, coefficient], ...]";
     case Type::coordinates:
       return "name: [x, y, z]";
     case Type::elements:
@@ -54,7 +62,8 @@ std::string default_text(const Keyword& keyword) {
 
 std::string range_text(const Keyword& keyword) {
   if (keyword.type == Type::choice) return join(keyword.choices);
-  if (keyword.type == Type::directions) return "all, pinned, or a list of x, y, z, rx, ry, rz";
+  if (keyword.type == Type::directions) return "all, pinned, symmetry, or a list of x, y, z, rx, ry, rz";
+  if (keyword.type == Type::releases) return "all, or a list of torsion, bending_2, bending_3";
   return keyword.range.text();
 }
 

@@ -81,12 +81,12 @@ Mat<4> cubic_mass(double mass_per_length, double rotary_inertia, double L) {
 
 }  // namespace
 
-BeamLocalResponse beam_local_law(const BeamSection& section, double length, const Vec<7>& deformation,
-                                 Want want) {
+BeamLocalResponse beam_local_law(const BeamSection& section, double length, double free_strain,
+                                 const Vec<7>& deformation, Want want) {
   const std::array planes{
       bending(2, section.bending_stiffness_2, section.shear_stiffness_3, length, deformation),
       bending(3, section.bending_stiffness_3, section.shear_stiffness_2, length, deformation)};
-  double strain = deformation[0] / length;
+  double strain = deformation[0] / length - free_strain;  // the part that makes force
   Vec<7> strain_gradient = Vec<7>::Unit(0) / length;
   for (const Plane& plane : planes) {
     strain += quadratic(plane, plane.shortening_c, plane.shortening_s);

@@ -12,7 +12,7 @@ struct Stretched {
   detail::Chord chord;
   double unstressed_length;   ///< L0 [m]
   double engineering_strain;  ///< l / L0 - 1
-  material::TensionOnlyResponse law;
+  material::AxialResponse law;
 };
 
 Stretched stretch(const CableProperties& properties, const Mat<3, 2>& x_ref, const Vec<6>& u) {
@@ -20,7 +20,7 @@ Stretched stretch(const CableProperties& properties, const Mat<3, 2>& x_ref, con
   const double eps0 = properties.initial_strain;
   const double strain = eps0 + (1 + eps0) * chord.elongation / chord.length_ref;
   return {chord, chord.length_ref / (1 + eps0), strain,
-          material::tension_only(properties.axial_stiffness, strain)};
+          material::axial_law(properties.axial_stiffness, strain, properties.carries_compression)};
 }
 
 /// Tangent of both ends from the block that links them.
@@ -66,8 +66,8 @@ Vec<6> cable_force_by_unstressed_length(const CableProperties& properties, const
   return derivative;
 }
 
-Mat<6> cable_mass(double mass_per_length, const Mat<3, 2>& x_ref) {
-  const double sixth = mass_per_length * (x_ref.col(1) - x_ref.col(0)).norm() / 6;
+Mat<6> cable_mass(double mass_per_length, double unstressed_length) {
+  const double sixth = mass_per_length * unstressed_length / 6;
   const Mat3 I = Mat3::Identity();
   Mat<6> mass;
   mass << 2 * sixth * I, sixth * I, sixth * I, 2 * sixth * I;

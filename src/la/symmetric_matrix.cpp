@@ -44,7 +44,7 @@ void SymmetricMatrix::set_zero() {
 
 void SymmetricMatrix::add(std::span<const int> blocks, const double* values) {
   const int n = static_cast<int>(blocks.size());
-  std::array<int, 8> rows{};  // PETSc passes over negative rows
+  std::array<int, 64> rows;  // PETSc passes over negative rows
   assert(blocks.size() <= rows.size());
   for (int i = 0; i < n; ++i) {
     const bool own = blocks[i] >= layout_.first && blocks[i] < layout_.first + layout_.local;

@@ -6,6 +6,7 @@
 
 #include <tautline/core/error.hpp>
 #include <tautline/core/text.hpp>
+#include <tautline/model/element_data.hpp>
 
 namespace tautline::model {
 
@@ -29,9 +30,10 @@ std::vector<int> of_group(const Elements& elements, int group) {
   return indices;
 }
 
-double area(const Model& model, const Membrane& membrane) {
-  const auto& [a, b, c] = membrane.nodes;
-  return 0.5 * (model.nodes[b] - model.nodes[a]).cross(model.nodes[c] - model.nodes[a]).norm();
+template <class Facet>
+double area(const Model& model, const Facet& facet) {
+  return facet.nodes.size() == 3 ? element::membrane_area<3>(reference_nodes<3>(model, facet.nodes))
+                                 : element::membrane_area<4>(reference_nodes<4>(model, facet.nodes));
 }
 
 double length(const Model& model, const std::array<int, 2>& nodes) {
@@ -56,6 +58,11 @@ Selection Model::select(const std::string& name) const {
     add(result.cables, of_group(cables, group));
     add(result.beams, of_group(beams, group));
     add(result.membranes, of_group(membranes, group));
+    add(result.shells, of_group(shells, group));
+    add(result.springs, of_group(springs, group));
+    add(result.masses, of_group(masses, group));
+    for (const auto& link : links)
+      if (link.group == group) result.nodes.insert(result.nodes.end(), {link.leader, link.follower});
   } else if (!selections.contains(name)) {
     const std::string near = nearest(name, names());
     throw ModelError(fmt::format("nothing in the structure is called \"{}\"{}; known: {}", name,
@@ -65,16 +72,23 @@ Selection Model::select(const std::string& name) const {
   append_nodes(cables, result.cables, result.nodes);
   append_nodes(beams, result.beams, result.nodes);
   append_nodes(membranes, result.membranes, result.nodes);
+  append_nodes(shells, result.shells, result.nodes);
+  append_nodes(springs, result.springs, result.nodes);
+  append_nodes(masses, result.masses, result.nodes);
   sort_unique(result.nodes);
   return result;
 }
 
 std::vector<int> Model::nodes_of(const std::vector<std::string>& wanted) const {
+  std::map<int, int> leader;  // of the ends of beams that hang on a node
+  for (const auto& link : links)
+    if (link.group < 0) leader[link.follower] = link.leader;
   std::vector<int> result;
-  for (const auto& name : wanted) {
-    const auto selected = select(name).nodes;
-    result.insert(result.end(), selected.begin(), selected.end());
-  }
+  for (const auto& name : wanted)
+    for (const int node : select(name).nodes) {
+      const auto found = leader.find(node);
+      result.push_back(found == leader.end() ? node : found->second);
+    }
   sort_unique(result);
   return result;
 }
@@ -89,9 +103,44 @@ std::vector<std::string> Model::names() const {
 
 std::vector<bool> Model::rotational_nodes() const {
   std::vector<bool> result(nodes.size(), false);
-  for (const auto& beam : beams)
-    for (const int node : beam.nodes) result[node] = true;
+  const auto mark = [&](const auto& elements, const auto& has_rotation) {
+    for (const auto& element : elements)
+      if (has_rotation(groups[element.group]))
+        for (const int node : element.nodes) result[node] = true;
+  };
+  const auto always = [](const Group&) { return true; };
+  mark(beams, always);
+  mark(shells, always);
+  mark(springs, [](const Group& g) { return !g.spring.rotational_stiffness.isZero(0); });
+  mark(masses, [](const Group& g) { return !g.mass.inertia.isZero(0); });
+  const auto order = links_in_order(*this);
+  for (auto at = order.rbegin(); at != order.rend();
+       ++at) {  // an arm turns with its leader, as a tied rotation
+    const auto& link = links[*at];
+    const bool arm = nodes[link.leader] != nodes[link.follower];
+    if (arm || (result[link.follower] && !link.rotation_free)) result[link.leader] = true;
+    if (!link.hinge.empty()) result[link.follower] = result[link.leader] = true;
+  }
+  for (const auto& pair : cyclic_pairs)
+    if (result[pair.leader] || result[pair.follower]) result[pair.leader] = result[pair.follower] = true;
   return result;
+}
+
+std::vector<int> links_in_order(const Model& model) {
+  std::map<int, int> link_of;  // by follower
+  for (int i = 0; i < static_cast<int>(model.links.size()); ++i) link_of[model.links[i].follower] = i;
+  std::vector<int> order;
+  std::vector<int> depth(model.links.size(), 0);
+  for (std::size_t i = 0; i < model.links.size(); ++i)
+    for (auto found = link_of.find(model.links[i].leader); found != link_of.end();
+         found = link_of.find(model.links[found->second].leader))
+      if (++depth[i] > static_cast<int>(model.links.size()))
+        throw ModelError(
+            fmt::format("links lead in a ring through node {}: one of its nodes must follow none",
+                        model.links[i].leader + 1));
+  for (std::size_t i = 0; i < model.links.size(); ++i) order.push_back(static_cast<int>(i));
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return depth[a] < depth[b]; });
+  return order;
 }
 
 double Model::reference_length(const Cable& cable) const {
@@ -105,14 +154,73 @@ double Model::unstressed_length(const Cable& cable) const {
 std::map<std::string, double> mass_by_group(const Model& model) {
   std::vector<double> mass(model.groups.size(), 0.0);
   for (const auto& cable : model.cables)
-    mass[cable.group] += model.groups[cable.group].cable.mass_per_length * model.reference_length(cable);
+    mass[cable.group] += model.groups[cable.group].cable.mass_per_length * model.unstressed_length(cable);
   for (const auto& beam : model.beams)
-    mass[beam.group] += model.groups[beam.group].beam.mass_per_length * length(model, beam.nodes);
+    mass[beam.group] += beam_section(model, beam).mass_per_length * length(model, beam.nodes);
   for (const auto& membrane : model.membranes)
     mass[membrane.group] += model.groups[membrane.group].membrane.mass_per_area * area(model, membrane);
+  for (const auto& shell : model.shells) {
+    const auto& section = model.groups[shell.group].shell;
+    mass[shell.group] += section.density * section.thickness * area(model, shell);
+  }
+  for (const auto& point : model.masses) mass[point.group] += model.groups[point.group].mass.mass;
   std::map<std::string, double> result;
   for (std::size_t i = 0; i < mass.size(); ++i) result[model.groups[i].name] = mass[i];
   return result;
+}
+
+namespace {
+
+/// Normal of a facet at its corner `i`.
+Vec3 corner_normal(const Model& model, const FacetNodes& nodes, int i) {
+  const int n = nodes.size();
+  const Vec3& here = model.nodes[nodes[i]];
+  return (model.nodes[nodes[(i + 1) % n]] - here)
+      .cross(model.nodes[nodes[(i + n - 1) % n]] - here)
+      .normalized();
+}
+
+/// Normals of the planes of symmetry that supports make at each node: the displacement along one direction
+/// and the rotations about the two others are held, the rotation about it is not.
+std::vector<std::vector<Vec3>> symmetry_planes(const Model& model) {
+  std::vector<std::vector<Vec3>> planes(model.nodes.size());
+  for (const auto& support : model.supports)
+    for (int c = 0; c < 3; ++c) {
+      const auto& fixed = support.fixed;
+      if (!fixed[c] || fixed[3 + c] || !fixed[3 + (c + 1) % 3] || !fixed[3 + (c + 2) % 3]) continue;
+      for (const int node : support.nodes) planes[node].push_back(support.axes.col(c));
+    }
+  return planes;
+}
+
+/// The normal as it is between a shell and its mirror image: the sum of it and of its image.
+Vec3 mirrored(Vec3 normal, const std::vector<Vec3>& planes) {
+  constexpr double smooth = 0.342;  // sine of 20 degrees: beyond, the mirror is a kink
+  for (const Vec3& plane : planes)
+    if (const double across = normal.dot(plane); std::abs(across) < smooth)
+      normal = (normal - across * plane).normalized();
+  return normal;
+}
+
+}  // namespace
+
+void find_directors(Model& model) {
+  const auto planes = symmetry_planes(model);
+  constexpr double smooth = 0.9397;  // cosine of 20 degrees: beyond, an edge is a kink
+  std::vector<std::vector<std::pair<int, Vec3>>> at_node(model.nodes.size());
+  for (const auto& shell : model.shells)
+    for (int i = 0; i < shell.nodes.size(); ++i)
+      at_node[shell.nodes[i]].emplace_back(shell.group, corner_normal(model, shell.nodes, i));
+  for (auto& shell : model.shells)
+    for (int i = 0; i < shell.nodes.size(); ++i) {
+      const Vec3 own = corner_normal(model, shell.nodes, i);
+      Vec3 sum = Vec3::Zero();
+      for (const auto& [group, normal] : at_node[shell.nodes[i]])
+        if (group == shell.group && std::abs(normal.dot(own)) >= smooth)
+          sum += normal.dot(own) < 0 ? Vec3(-normal) : normal;
+      shell.director[static_cast<std::size_t>(i)] =
+          mirrored(sum.normalized(), planes[static_cast<std::size_t>(shell.nodes[i])]);
+    }
 }
 
 double total_mass(const Model& model) {

@@ -3,36 +3,71 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include <tautline/element/cable.hpp>
 #include <tautline/model/element_data.hpp>
 
 namespace tautline::model {
 
+namespace {
+
+using element::Want;
+
+CableResult cable_result(const Model& model, const State& state, const Cable& cable) {
+  const auto u = displacements<2>(state, cable.nodes);
+  if (model.groups[cable.group].kind == ElementKind::catenary) {
+    const auto result = element::evaluate_catenary(catenary_properties(model, cable), model.acceleration,
+                                                   reference_nodes<2>(model, cable.nodes), u, Want::force);
+    const double tension = std::max(result.tension_start, result.tension_end);
+    return {result.length, tension, tension == 0};
+  }
+  const auto data = cable_data(model, cable);
+  const auto result = element::evaluate_cable(data.properties, data.x_ref, u, Want::force);
+  const double length = (data.x_ref.col(1) - data.x_ref.col(0) + u.tail<3>() - u.head<3>()).norm();
+  return {length, result.tension, result.slack};
+}
+
+template <int N>
+MembraneResult membrane_result(const Model& model, const State& state, const Membrane& membrane) {
+  const auto result = element::evaluate_membrane<N>(membrane_law<N>(model, membrane),
+                                                    reference_nodes<N>(model, membrane.nodes),
+                                                    displacements<N>(state, membrane.nodes), Want::force);
+  Vec<2> principal = result.principal_cauchy;
+  if (result.state == element::MembraneState::slack) principal.setZero();
+  if (std::abs(principal[1]) < 1e-10 * std::abs(principal[0])) principal[1] = 0;  // rounding
+  return {principal, result.state};
+}
+
+template <int N>
+element::ShellForces shell_result(const Model& model, const State& state, const Shell& shell) {
+  return element::evaluate_shell<N>(model.groups[shell.group].shell, shell_geometry<N>(model, shell),
+                                    shell_motion<N>(state, shell), Want::force)
+      .forces;
+}
+
+}  // namespace
+
 Response evaluate_response(const Model& model, const State& state) {
-  using element::Want;
   Response response;
   response.cables.reserve(model.cables.size());
-  for (const auto& cable : model.cables) {
-    const auto data = cable_data(model, cable);
-    const auto result =
-        element::evaluate_cable(data.properties, data.x_ref, gather(state, cable.nodes), Want::force);
-    const double length = (model.nodes[cable.nodes[1]] + state.displacement[cable.nodes[1]] -
-                           model.nodes[cable.nodes[0]] - state.displacement[cable.nodes[0]])
-                              .norm();
-    response.cables.push_back({length, result.tension, result.slack});
-  }
+  for (const auto& cable : model.cables) response.cables.push_back(cable_result(model, state, cable));
   for (const auto& beam : model.beams) {
-    const auto result = element::evaluate_beam(model.groups[beam.group].beam, beam_geometry(model, beam),
+    const auto result = element::evaluate_beam(beam_section(model, beam), beam_geometry(model, beam),
                                                beam_motion(state, beam), Want::force);
     response.beams.push_back(result.forces);
     response.beam_frames.push_back(result.frame);
   }
-  for (const auto& membrane : model.membranes) {
-    const auto result = element::evaluate_membrane(model.groups[membrane.group].membrane, membrane.prestress,
-                                                   membrane_nodes(model, membrane),
-                                                   gather(state, membrane.nodes), Want::force);
-    response.membranes.push_back({result.principal_cauchy});
+  for (const auto& membrane : model.membranes)
+    response.membranes.push_back(membrane.nodes.size() == 3 ? membrane_result<3>(model, state, membrane)
+                                                            : membrane_result<4>(model, state, membrane));
+  for (const auto& shell : model.shells)
+    response.shells.push_back(shell.nodes.size() == 3 ? shell_result<3>(model, state, shell)
+                                                      : shell_result<4>(model, state, shell));
+  for (const auto& spring : model.springs) {
+    const auto result = element::evaluate_spring(model.groups[spring.group].spring,
+                                                 spring_motion(state, spring), Want::force);
+    response.springs.push_back({result.spring_force, result.spring_moment});
   }
   return response;
 }
@@ -78,36 +113,68 @@ void finish(GroupSummary& summary) {
   }
 }
 
+void add(GroupSummary& s, const CableResult& cable, double target) {
+  s.slack += cable.slack ? 1 : 0;
+  s.axial_min = s.tension_min = std::min(s.tension_min, cable.tension);
+  s.axial_max = s.tension_max = std::max(s.tension_max, cable.tension);
+  s.tension_mean += cable.tension;
+  s.tension_rms_from_target += std::pow(cable.tension - target, 2);
+}
+
+void add(GroupSummary& s, const element::BeamForces& beam) {
+  s.axial_min = std::min(s.axial_min, beam.axial);
+  s.axial_max = std::max(s.axial_max, beam.axial);
+  for (int end = 0; end < 2; ++end)
+    s.moment_max = std::max(s.moment_max, beam.end_moment.col(end).tail<2>().norm());
+}
+
+void add(GroupSummary& s, const MembraneResult& membrane) {
+  s.principal_min = std::min(s.principal_min, membrane.principal_cauchy[1]);
+  s.principal_max = std::max(s.principal_max, membrane.principal_cauchy[0]);
+  s.wrinkled += membrane.state == element::MembraneState::wrinkled ? 1 : 0;
+  s.slack += membrane.state == element::MembraneState::slack ? 1 : 0;
+}
+
+void add(GroupSummary& s, const element::ShellForces& shell) {
+  const auto n = principal_values(shell.membrane), m = principal_values(shell.moment);
+  s.principal_min = std::min(s.principal_min, n[1]);
+  s.principal_max = std::max(s.principal_max, n[0]);
+  s.moment_max = std::max(s.moment_max, m.cwiseAbs().maxCoeff());
+}
+
+void add(GroupSummary& s, const SpringResult& spring) {
+  s.force_max = std::max(s.force_max, spring.force.norm());
+  s.moment_max = std::max(s.moment_max, spring.moment.norm());
+}
+
 }  // namespace
+
+Vec<2> principal_values(const Vec3& n) {
+  const double mean = (n[0] + n[1]) / 2, radius = std::hypot((n[0] - n[1]) / 2, n[2]);
+  return {mean + radius, mean - radius};
+}
 
 std::map<std::string, GroupSummary> summarise_groups(const Model& model, const Response& response) {
   std::vector<GroupSummary> summaries;
   for (const auto& group : model.groups) summaries.push_back(start(group));
-  for (std::size_t i = 0; i < model.cables.size(); ++i) {
-    auto& s = summaries[model.cables[i].group];
-    const double tension = response.cables[i].tension;
-    ++s.count;
-    s.slack += response.cables[i].slack ? 1 : 0;
-    s.tension_min = std::min(s.tension_min, tension);
-    s.tension_max = std::max(s.tension_max, tension);
-    s.tension_mean += tension;
-    s.tension_rms_from_target += std::pow(tension - model.groups[model.cables[i].group].target_tension, 2);
-  }
-  for (std::size_t i = 0; i < model.beams.size(); ++i) {
-    auto& s = summaries[model.beams[i].group];
-    const auto& forces = response.beams[i];
-    ++s.count;
-    s.axial_min = std::min(s.axial_min, forces.axial);
-    s.axial_max = std::max(s.axial_max, forces.axial);
-    for (int end = 0; end < 2; ++end)
-      s.moment_max = std::max(s.moment_max, forces.end_moment.col(end).tail<2>().norm());
-  }
-  for (std::size_t i = 0; i < model.membranes.size(); ++i) {
-    auto& s = summaries[model.membranes[i].group];
-    ++s.count;
-    s.principal_min = std::min(s.principal_min, response.membranes[i].principal_cauchy[1]);
-    s.principal_max = std::max(s.principal_max, response.membranes[i].principal_cauchy[0]);
-  }
+  const auto add_all = [&](const auto& elements, const auto& results) {
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      auto& summary = summaries[elements[i].group];
+      ++summary.count;
+      if constexpr (std::is_same_v<std::decay_t<decltype(results[i])>, CableResult>)
+        add(summary, results[i], model.groups[elements[i].group].target_tension);
+      else
+        add(summary, results[i]);
+    }
+  };
+  add_all(model.cables, response.cables);
+  add_all(model.beams, response.beams);
+  add_all(model.membranes, response.membranes);
+  add_all(model.shells, response.shells);
+  add_all(model.springs, response.springs);
+  for (const auto& point : model.masses) ++summaries[point.group].count;
+  for (const auto& link : model.links)
+    if (link.group >= 0) ++summaries[link.group].count;
   clear_rounding(summaries);
   std::map<std::string, GroupSummary> result;
   for (std::size_t i = 0; i < summaries.size(); ++i) {

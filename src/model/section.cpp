@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include <tautline/core/error.hpp>
+#include <tautline/model/element_data.hpp>
 
 namespace tautline::model {
 
@@ -52,16 +53,28 @@ Shape tube(double mean_diameter, double thickness, double nu) {
   return {pi * (outer * outer - inner * inner) / 4, inertia, inertia, 2 * inertia, factor, factor};
 }
 
-CableSection cable_section(const CableSectionOptions& o, const Materials& materials) {
-  CableSection section;
+Shape i_section(const ISectionOptions& o) {
+  const double web = o.height - 2 * o.flange_thickness, flanges = 2 * o.width * o.flange_thickness;
+  const double area = flanges + web * o.web_thickness;
+  const double inertia_2 =
+      (o.width * std::pow(o.height, 3) - (o.width - o.web_thickness) * std::pow(web, 3)) / 12;
+  const double inertia_3 =
+      (2 * o.flange_thickness * std::pow(o.width, 3) + web * std::pow(o.web_thickness, 3)) / 12;
+  const double torsion =
+      (2 * o.width * std::pow(o.flange_thickness, 3) + web * std::pow(o.web_thickness, 3)) / 3;
+  return {area, inertia_2, inertia_3, torsion, 5.0 / 6.0 * flanges / area, o.height * o.web_thickness / area};
+}
+
+void set_axial(Group& group, const AxialSectionOptions& o, const Materials& materials) {
   if (!o.material.empty()) {
     const auto& material = materials.at(o.material);
     const double area = o.area ? *o.area : pi * std::pow(o.diameter.value_or(0), 2) / 4;
-    section = {material.young_modulus * area, material.density * area};
+    group.cable = {material.young_modulus * area, material.density * area};
+    group.thermal_expansion = material.thermal_expansion;
   }
-  if (o.axial_stiffness) section.axial_stiffness = *o.axial_stiffness;
-  if (o.mass_per_length) section.mass_per_length = *o.mass_per_length;
-  return section;
+  if (o.axial_stiffness) group.cable.axial_stiffness = *o.axial_stiffness;
+  if (o.mass_per_length) group.cable.mass_per_length = *o.mass_per_length;
+  if (o.thermal_expansion) group.thermal_expansion = *o.thermal_expansion;
 }
 
 element::MembraneSection membrane_section(const MembraneSectionOptions& o, const Materials& materials) {
@@ -69,12 +82,35 @@ element::MembraneSection membrane_section(const MembraneSectionOptions& o, const
   if (!o.material.empty()) {
     const auto& material = materials.at(o.material);
     const double thickness = o.thickness.value_or(0);
-    section = {material.young_modulus * thickness, material.poisson_ratio, material.density * thickness};
+    section.tension_stiffness = material.young_modulus * thickness;
+    section.poisson_ratio = material.poisson_ratio;
+    section.mass_per_area = material.density * thickness;
+    section.thermal_expansion = material.thermal_expansion;
   }
-  if (o.tension_stiffness) section.tension_stiffness = *o.tension_stiffness;
-  if (o.poisson_ratio) section.poisson_ratio = *o.poisson_ratio;
-  if (o.mass_per_area) section.mass_per_area = *o.mass_per_area;
+  const auto take = [](const std::optional<double>& from, double& to) {
+    if (from) to = *from;
+  };
+  take(o.tension_stiffness, section.tension_stiffness);
+  take(o.poisson_ratio, section.poisson_ratio);
+  take(o.mass_per_area, section.mass_per_area);
+  take(o.tension_stiffness_2, section.tension_stiffness_2);
+  take(o.shear_stiffness, section.shear_stiffness);
+  take(o.thermal_expansion, section.thermal_expansion);
+  section.thermal_expansion_2 = o.thermal_expansion_2.value_or(section.thermal_expansion);
+  section.wrinkling = o.wrinkling;
   return section;
+}
+
+element::ShellSection shell_section(const ShellSectionOptions& o, const Materials& materials) {
+  const auto& m = materials.at(o.material);
+  return {m.young_modulus, m.poisson_ratio, o.thickness, m.density, o.shear_factor, m.thermal_expansion};
+}
+
+TaperedTube tapered_tube(const TaperedTubeSectionOptions& o, const Materials& materials) {
+  return {{o.diameter_start, o.diameter_end},
+          {o.thickness_start, o.thickness_end},
+          materials.at(o.material),
+          o.shear_flexible};
 }
 
 element::BeamSection general(const GeneralBeamSectionOptions& o) {
@@ -90,36 +126,113 @@ struct Overloaded : Ts... {
 
 }  // namespace
 
-ElementKind kind_of(const SectionOptions& section) {
-  if (std::holds_alternative<CableSectionOptions>(section)) return ElementKind::cable;
-  if (std::holds_alternative<MembraneSectionOptions>(section)) return ElementKind::membrane;
-  return ElementKind::beam;
+element::BeamSection tapered_section(const TaperedTube& t, double place) {
+  const auto at = [&](const std::array<double, 2>& ends) { return (1 - place) * ends[0] + place * ends[1]; };
+  return beam_section(tube(at(t.diameter), at(t.thickness), t.material.poisson_ratio), t.material,
+                      t.shear_flexible);
 }
+
+ElementKind kind_of(const SectionOptions& section) {
+  return std::visit(Overloaded{[](const CableSectionOptions&) { return ElementKind::cable; },
+                               [](const BarSectionOptions&) { return ElementKind::bar; },
+                               [](const CatenarySectionOptions&) { return ElementKind::catenary; },
+                               [](const MembraneSectionOptions&) { return ElementKind::membrane; },
+                               [](const ShellSectionOptions&) { return ElementKind::shell; },
+                               [](const SpringSectionOptions&) { return ElementKind::spring; },
+                               [](const MassSectionOptions&) { return ElementKind::mass; },
+                               [](const RigidLinkSectionOptions&) { return ElementKind::link; },
+                               [](const HingeSectionOptions&) { return ElementKind::link; },
+                               [](const auto&) { return ElementKind::beam; }},
+                    section);
+}
+
+namespace {
+
+/// Fills the part of a group that its kind of section means.
+class SectionSetter {
+ public:
+  SectionSetter(Group& group, const Materials& materials) : group_(group), materials_(materials) {}
+
+  void operator()(const AxialSectionOptions& o) const { set_axial(group_, o, materials_); }
+  void operator()(const MembraneSectionOptions& o) const {
+    group_.membrane = membrane_section(o, materials_);
+  }
+  void operator()(const ShellSectionOptions& o) const { group_.shell = shell_section(o, materials_); }
+  void operator()(const SpringSectionOptions& o) const {
+    group_.spring = {o.stiffness, o.rotational_stiffness};
+  }
+  void operator()(const MassSectionOptions& o) const { group_.mass = {o.mass, o.inertia}; }
+  void operator()(const RigidLinkSectionOptions&) const {}
+  void operator()(const HingeSectionOptions&) const {}
+  void operator()(const RectangleSectionOptions& o) const { set(o, rectangle(o.width, o.height)); }
+  void operator()(const RoundSectionOptions& o) const { set(o, round_bar(o.diameter, poisson(o))); }
+  void operator()(const TubeSectionOptions& o) const { set(o, tube(o.diameter, o.thickness, poisson(o))); }
+  void operator()(const ISectionOptions& o) const { set(o, i_section(o)); }
+  void operator()(const GeneralSectionOptions& o) const {
+    const auto& m = materials_.at(o.material);
+    group_.beam = beam_section(
+        {o.area, o.inertia_2, o.inertia_3, o.torsion, o.shear_factor_2, o.shear_factor_3}, m, true);
+    group_.thermal_expansion = m.thermal_expansion;
+  }
+  void operator()(const GeneralBeamSectionOptions& o) const {
+    group_.beam = general(o);
+    group_.thermal_expansion = o.thermal_expansion;
+  }
+  void operator()(const TaperedTubeSectionOptions& o) const {
+    group_.taper = tapered_tube(o, materials_);
+    group_.beam = tapered_section(*group_.taper, 0.5);
+    group_.thermal_expansion = group_.taper->material.thermal_expansion;
+  }
+
+ private:
+  template <class Options>
+  double poisson(const Options& o) const {
+    return materials_.at(o.material).poisson_ratio;
+  }
+  template <class Options>
+  void set(const Options& o, const Shape& shape) const {
+    const auto& material = materials_.at(o.material);
+    group_.beam = beam_section(shape, material, o.shear_flexible);
+    group_.thermal_expansion = material.thermal_expansion;
+  }
+
+  Group& group_;
+  const Materials& materials_;
+};
+
+/// Resultants N1, N2 along `orientation` and across it, in the axes of `frame`.
+Vec3 along_orientation(const Mat3& frame, const Vec3& orientation, const std::array<double, 2>& n) {
+  if (n[0] == n[1]) return {n[0], n[1], 0};
+  const double angle = angle_in(frame, orientation), c = std::cos(angle), s = std::sin(angle);
+  return {c * c * n[0] + s * s * n[1], s * s * n[0] + c * c * n[1], c * s * (n[0] - n[1])};
+}
+
+template <int N>
+Mat3 frame_of(const Model& model, const Membrane& membrane) {
+  return element::membrane_frame<N>(reference_nodes<N>(model, membrane.nodes));
+}
+template <int N>
+Mat3 frame_of(const Model& model, const Shell& shell) {
+  return element::shell_frame<N>(reference_nodes<N>(model, shell.nodes));
+}
+
+template <class Facets>
+void prestress_facets(Model& model, Facets& facets, int group, const std::array<double, 2>& resultants) {
+  for (auto& facet : facets)
+    if (facet.group == group)
+      facet.prestress =
+          along_orientation(facet.nodes.size() == 3 ? frame_of<3>(model, facet) : frame_of<4>(model, facet),
+                            model.groups[group].orientation, resultants);
+}
+
+}  // namespace
 
 void set_section(Group& group, const SectionOptions& section, const Materials& materials) {
   group.kind = kind_of(section);
-  std::visit(
-      Overloaded{[&](const CableSectionOptions& o) { group.cable = cable_section(o, materials); },
-                 [&](const MembraneSectionOptions& o) { group.membrane = membrane_section(o, materials); },
-                 [&](const RectangleSectionOptions& o) {
-                   group.beam =
-                       beam_section(rectangle(o.width, o.height), materials.at(o.material), o.shear_flexible);
-                 },
-                 [&](const RoundSectionOptions& o) {
-                   const auto& material = materials.at(o.material);
-                   group.beam = beam_section(round_bar(o.diameter, material.poisson_ratio), material,
-                                             o.shear_flexible);
-                 },
-                 [&](const TubeSectionOptions& o) {
-                   const auto& material = materials.at(o.material);
-                   group.beam = beam_section(tube(o.diameter, o.thickness, material.poisson_ratio), material,
-                                             o.shear_flexible);
-                 },
-                 [&](const GeneralBeamSectionOptions& o) { group.beam = general(o); }},
-      section);
+  std::visit(SectionSetter(group, materials), section);
 }
 
-void set_initial_state(Model& model, int group, const GroupOptions& options) {
+void set_initial_state(Model& model, int group, const GroupOptions& options, double thickness) {
   const double stiffness = model.groups[group].cable.axial_stiffness;
   for (auto& cable : model.cables) {
     if (cable.group != group) continue;
@@ -129,9 +242,14 @@ void set_initial_state(Model& model, int group, const GroupOptions& options) {
     if (options.unstressed_length) cable.initial_strain = length / *options.unstressed_length - 1;
     if (options.prestrain) cable.initial_strain = *options.prestrain;
   }
-  for (auto& membrane : model.membranes)
-    if (membrane.group == group && options.prestress)
-      membrane.prestress = {*options.prestress, *options.prestress, 0};
+  auto resultants = options.prestress;
+  if (options.initial_stress) {
+    resultants = options.initial_stress;
+    for (double& value : *resultants) value *= thickness;
+  }
+  if (!resultants) return;
+  prestress_facets(model, model.membranes, group, *resultants);
+  prestress_facets(model, model.shells, group, *resultants);
 }
 
 }  // namespace tautline::model

@@ -3,7 +3,8 @@
 namespace tautline::model {
 
 State State::reference(const Model& model) {
-  return {Points(model.nodes.size(), Vec3::Zero()), std::vector<Mat3>(model.nodes.size(), Mat3::Identity())};
+  return {Points(model.nodes.size(), Vec3::Zero()), std::vector<Mat3>(model.nodes.size(), Mat3::Identity()),
+          Points(model.links.size(), Vec3::Zero())};
 }
 
 Points positions(const Model& model, const State& state) {

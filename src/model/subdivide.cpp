@@ -34,14 +34,18 @@ class Subdivider {
     new_.cables.clear();
     new_.beams.clear();
     new_.membranes.clear();
+    new_.shells.clear();
   }
 
   Model run() {
     find_facet_sides();
     split_lines(old_.cables, new_.cables, cable_children_);
     split_lines(old_.beams, new_.beams, beam_children_);
-    for (std::size_t i = 0; i < old_.membranes.size(); ++i) split_facet(static_cast<int>(i));
+    find_spans();
+    split_facets(old_.membranes, new_.membranes, membrane_children_);
+    split_facets(old_.shells, new_.shells, shell_children_);
     follow();
+    find_directors(new_);
     return std::move(new_);
   }
 
@@ -55,8 +59,9 @@ class Subdivider {
     for (const auto& [name, parts] : options_.group_subdivisions) {
       const int group = old_.find_group(name);
       if (group < 0) throw ModelError(fmt::format("group_subdivisions: no group is called \"{}\"", name));
-      if (old_.groups[group].kind == ElementKind::membrane)
-        throw ModelError(fmt::format("group_subdivisions: \"{}\" are membranes; use subdivisions", name));
+      if (const auto kind = old_.groups[group].kind; !is_cable_like(kind) && kind != ElementKind::beam)
+        throw ModelError(fmt::format(
+            "group_subdivisions: \"{}\" is made of neither cables nor beams; use subdivisions", name));
       if (parts < 1)
         throw ModelError(
             fmt::format("group_subdivisions: \"{}\" needs 1 or more parts, not {}", name, parts));
@@ -64,9 +69,13 @@ class Subdivider {
   }
 
   void find_facet_sides() {
-    for (const auto& facet : old_.membranes)
-      for (int k = 0; k < 3; ++k)
-        sides_[edge_of(facet.nodes[k], facet.nodes[(k + 1) % 3])] = options_.subdivisions;
+    const auto add_sides = [&](const auto& facets) {
+      for (const auto& facet : facets)
+        for (int k = 0, n = facet.nodes.size(); k < n; ++k)
+          sides_[edge_of(facet.nodes[k], facet.nodes[(k + 1) % n])] = options_.subdivisions;
+    };
+    add_sides(old_.membranes);
+    add_sides(old_.shells);
   }
 
   int parts_of(const Edge& edge, const Group& group) const {
@@ -120,33 +129,85 @@ class Subdivider {
     }
   }
 
-  void add_triangle(int parent, const std::array<int, 3>& nodes) {
-    const auto frame = [](const Points& points, const std::array<int, 3>& n) {
-      Mat3 x;
-      x << points[n[0]], points[n[1]], points[n[2]];
-      return element::membrane_frame(x);
-    };
-    const Membrane& old = old_.membranes[parent];
-    Membrane part = old;
-    part.nodes = nodes;
-    part.parent = parent;
-    part.prestress = turned(old.prestress, frame(old_.nodes, old.nodes), frame(new_.nodes, nodes));
-    membrane_children_[parent].push_back(static_cast<int>(new_.membranes.size()));
-    new_.membranes.push_back(part);
+  /// Places of the parts of each beam along it.
+  void find_spans() {
+    for (std::size_t i = 0; i < beam_children_.size(); ++i) {
+      const auto& whole = old_.beams[i].span;
+      const auto n = static_cast<double>(beam_children_[i].size());
+      for (std::size_t k = 0; k < beam_children_[i].size(); ++k) {
+        const auto at = [&](double part) { return whole[0] + (whole[1] - whole[0]) * part / n; };
+        new_.beams[beam_children_[i][k]].span = {at(static_cast<double>(k)), at(static_cast<double>(k + 1))};
+      }
+    }
   }
 
-  void split_facet(int index) {
-    membrane_children_.emplace_back();
-    if (options_.pattern == FacetPattern::mapped && options_.subdivisions > 1)
-      split_mapped(index);
+  /// Frames of a membrane or shell are built alike.
+  static Mat3 frame(const Points& points, const FacetNodes& n) {
+    if (n.size() == 3) {
+      Mat3 x;
+      x << points[n[0]], points[n[1]], points[n[2]];
+      return element::membrane_frame<3>(x);
+    }
+    Mat<3, 4> x;
+    x << points[n[0]], points[n[1]], points[n[2]], points[n[3]];
+    return element::membrane_frame<4>(x);
+  }
+
+  template <class Facet>
+  void split_facets(const std::vector<Facet>& from, std::vector<Facet>& to,
+                    std::vector<std::vector<int>>& children) {
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      parts_.clear();
+      split_facet(from[i].nodes);
+      children.emplace_back();
+      for (const auto& nodes : parts_) {
+        Facet part = from[i];
+        part.nodes = nodes;
+        part.parent = static_cast<int>(i);
+        part.prestress =
+            turned(from[i].prestress, frame(old_.nodes, from[i].nodes), frame(new_.nodes, nodes));
+        children.back().push_back(static_cast<int>(to.size()));
+        to.push_back(part);
+      }
+    }
+  }
+
+  void add_triangle(const std::array<int, 3>& nodes) { parts_.emplace_back(nodes); }
+
+  void split_facet(const FacetNodes& nodes) {
+    if (nodes.size() == 4)
+      split_quadrilateral(nodes);
+    else if (options_.pattern == FacetPattern::mapped && options_.subdivisions > 1)
+      split_mapped(nodes);
     else
-      split_structured(index);
+      split_structured(nodes);
+  }
+
+  /// s x s quadrilaterals, bilinear between the sides.
+  void split_quadrilateral(const FacetNodes& corner) {
+    const int s = options_.subdivisions;
+    const auto bottom = along(corner[0], corner[1], s), top = along(corner[3], corner[2], s);
+    const auto left = along(corner[0], corner[3], s), right = along(corner[1], corner[2], s);
+    std::vector<std::vector<int>> grid(s + 1, std::vector<int>(s + 1));
+    const auto& x = old_.nodes;
+    for (int j = 0; j <= s; ++j)
+      for (int i = 0; i <= s; ++i) {
+        const double a = double(i) / s, b = double(j) / s;
+        grid[j][i] = j == 0   ? bottom[i]
+                     : j == s ? top[i]
+                     : i == 0 ? left[j]
+                     : i == s ? right[j]
+                              : add_node((1 - b) * ((1 - a) * x[corner[0]] + a * x[corner[1]]) +
+                                         b * ((1 - a) * x[corner[3]] + a * x[corner[2]]));
+      }
+    for (int j = 0; j < s; ++j)
+      for (int i = 0; i < s; ++i)
+        parts_.emplace_back(grid[j][i], grid[j][i + 1], grid[j + 1][i + 1], grid[j + 1][i]);
   }
 
   /// s x s similar triangles: node (i, j) = A + i/s (B - A) + j/s (C - A).
-  void split_structured(int index) {
-    const int s = options_.subdivisions;
-    const auto [a, b, c] = old_.membranes[index].nodes;
+  void split_structured(const FacetNodes& nodes) {
+    const int s = options_.subdivisions, a = nodes[0], b = nodes[1], c = nodes[2];
     const auto ab = along(a, b, s), ac = along(a, c, s), bc = along(b, c, s);
     std::vector<std::vector<int>> grid(s + 1);
     for (int j = 0; j <= s; ++j)
@@ -163,15 +224,14 @@ class Subdivider {
       }
     for (int j = 0; j < s; ++j)
       for (int i = 0; i + j < s; ++i) {
-        add_triangle(index, {grid[j][i], grid[j][i + 1], grid[j + 1][i]});
-        if (i + j + 1 < s) add_triangle(index, {grid[j + 1][i + 1], grid[j + 1][i], grid[j][i + 1]});
+        add_triangle({grid[j][i], grid[j][i + 1], grid[j + 1][i]});
+        if (i + j + 1 < s) add_triangle({grid[j + 1][i + 1], grid[j + 1][i], grid[j][i + 1]});
       }
   }
 
   /// Three quadrilateral patches (corner, mid-side, centroid, mid-side), each h x h cells mapped bilinearly.
-  void split_mapped(int index) {
+  void split_mapped(const FacetNodes& nodes) {
     const int h = options_.subdivisions / 2;
-    const auto& nodes = old_.membranes[index].nodes;
     const Vec3 centre = (old_.nodes[nodes[0]] + old_.nodes[nodes[1]] + old_.nodes[nodes[2]]) / 3;
     std::array<std::vector<int>, 3> side, spoke;  // spoke[k]: from the middle of side k to the centroid
     const int centroid = add_node(centre);
@@ -182,13 +242,12 @@ class Subdivider {
       for (int i = 1; i < h; ++i) spoke[k].push_back(add_node(middle + (centre - middle) * (double(i) / h)));
       spoke[k].push_back(centroid);
     }
-    for (int k = 0; k < 3; ++k)
-      split_patch(index, h, side[k], side[(k + 2) % 3], spoke[k], spoke[(k + 2) % 3]);
+    for (int k = 0; k < 3; ++k) split_patch(h, side[k], side[(k + 2) % 3], spoke[k], spoke[(k + 2) % 3]);
   }
 
   /// Patch at a corner: `out` runs along the side that leaves the corner, `in` along the side that arrives at
   /// it.
-  void split_patch(int index, int h, const std::vector<int>& out, const std::vector<int>& in,
+  void split_patch(int h, const std::vector<int>& out, const std::vector<int>& in,
                    const std::vector<int>& out_spoke, const std::vector<int>& in_spoke) {
     std::vector<std::vector<int>> grid(h + 1, std::vector<int>(h + 1));
     const auto point = [&](int node) { return new_.nodes[node]; };
@@ -210,19 +269,19 @@ class Subdivider {
       }
     for (int j = 0; j < h; ++j)
       for (int i = 0; i < h; ++i)
-        split_cell(index, {grid[j][i], grid[j][i + 1], grid[j + 1][i + 1], grid[j + 1][i]});
+        split_cell({grid[j][i], grid[j][i + 1], grid[j + 1][i + 1], grid[j + 1][i]});
   }
 
   /// Two triangles of a quadrilateral, divided along its shorter diagonal.
-  void split_cell(int index, const std::array<int, 4>& q) {
+  void split_cell(const std::array<int, 4>& q) {
     const double first = (new_.nodes[q[2]] - new_.nodes[q[0]]).norm();
     const double second = (new_.nodes[q[3]] - new_.nodes[q[1]]).norm();
     if (first <= second) {
-      add_triangle(index, {q[0], q[1], q[2]});
-      add_triangle(index, {q[0], q[2], q[3]});
+      add_triangle({q[0], q[1], q[2]});
+      add_triangle({q[0], q[2], q[3]});
     } else {
-      add_triangle(index, {q[0], q[1], q[3]});
-      add_triangle(index, {q[1], q[2], q[3]});
+      add_triangle({q[0], q[1], q[3]});
+      add_triangle({q[1], q[2], q[3]});
     }
   }
 
@@ -237,6 +296,8 @@ class Subdivider {
       children(selection.cables, cable_children_);
       children(selection.beams, beam_children_);
       children(selection.membranes, membrane_children_);
+      children(selection.shells, shell_children_);
+      split_edges(selection);
     }
     for (auto& support : new_.supports) {
       auto& nodes = support.nodes;
@@ -247,12 +308,28 @@ class Subdivider {
     }
   }
 
+  /// Edges that are sides of facets, or lie along lines, are divided with them; their new nodes are selected.
+  void split_edges(Selection& selection) {
+    std::vector<std::array<int, 2>> parts;
+    for (const auto& [a, b] : selection.edges) {
+      const auto inner = std::find_if(inner_nodes_.begin(), inner_nodes_.end(), [&](const auto& entry) {
+        return entry.first.first == edge_of(a, b) && !entry.second.empty();
+      });
+      const auto nodes =
+          inner == inner_nodes_.end() ? std::vector<int>{a, b} : along(a, b, inner->first.second);
+      for (std::size_t k = 0; k + 1 < nodes.size(); ++k) parts.push_back({nodes[k], nodes[k + 1]});
+      selection.nodes.insert(selection.nodes.end(), nodes.begin(), nodes.end());
+    }
+    selection.edges = std::move(parts);
+  }
+
   const Model& old_;
   const SubdivideOptions& options_;
   Model new_;
   std::map<Edge, int> sides_;
   std::map<std::pair<Edge, int>, std::vector<int>> inner_nodes_;
-  std::vector<std::vector<int>> cable_children_, beam_children_, membrane_children_;
+  std::vector<std::vector<int>> cable_children_, beam_children_, membrane_children_, shell_children_;
+  std::vector<FacetNodes> parts_;  // of the facet being split
 };
 
 }  // namespace

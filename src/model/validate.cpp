@@ -38,11 +38,14 @@ class Faults {
 template <class Elements>
 void check_elements(const Model& model, const Elements& elements, const char* kind, ElementKind expected,
                     double smallest, Faults& faults) {
+  const auto fits = [&](ElementKind found) {
+    return expected == ElementKind::cable ? is_cable_like(found) : found == expected;
+  };
   const int n_nodes = static_cast<int>(model.nodes.size());
   for (std::size_t i = 0; i < elements.size(); ++i) {
     const auto& nodes = elements[i].nodes;
     const std::string who = faults.element(kind, i, elements[i].group);
-    if (model.groups[elements[i].group].kind != expected)
+    if (!fits(model.groups[elements[i].group].kind))
       faults.add("{}: the group's section is of another kind", who);
     bool known = true;
     for (const int node : nodes) known = known && node >= 0 && node < n_nodes;
@@ -50,7 +53,8 @@ void check_elements(const Model& model, const Elements& elements, const char* ki
       faults.add("{}: refers to a node that does not exist", who);
       continue;
     }
-    for (std::size_t k = 1; k < nodes.size(); ++k)
+    const int n = static_cast<int>(nodes.size());
+    for (int k = 1; k < n && smallest > 0; ++k)
       if ((model.nodes[nodes[k]] - model.nodes[nodes[k - 1]]).norm() <= smallest)
         faults.add("{}: its nodes {} and {} are at the same place", who, nodes[k - 1] + 1, nodes[k] + 1);
   }
@@ -62,10 +66,13 @@ void check_groups(const Model& model, Faults& faults) {
       if (!(value > 0) || !std::isfinite(value))
         faults.add("group \"{}\": {} must be positive, is {:g}", group.name, what, value);
     };
-    if (group.kind == ElementKind::cable)
-      positive(group.cable.axial_stiffness, "the axial stiffness E A [N]");
+    if (is_cable_like(group.kind)) positive(group.cable.axial_stiffness, "the axial stiffness E A [N]");
     if (group.kind == ElementKind::membrane)
       positive(group.membrane.tension_stiffness, "the tension stiffness E h [N/m]");
+    if (group.kind == ElementKind::shell) {
+      positive(group.shell.young_modulus, "Young's modulus [Pa]");
+      positive(group.shell.thickness, "the thickness [m]");
+    }
     if (group.kind == ElementKind::beam) {
       positive(group.beam.axial_stiffness, "the axial stiffness E A [N]");
       positive(group.beam.bending_stiffness_2, "the bending stiffness about axis 2 [N m^2]");
@@ -76,26 +83,75 @@ void check_groups(const Model& model, Faults& faults) {
 }
 
 /// The bound is far above the round-off of three points in a line and far below any facet of use.
-void check_areas(const Model& model, Faults& faults) {
-  for (std::size_t i = 0; i < model.membranes.size(); ++i) {
-    const auto& [a, b, c] = model.membranes[i].nodes;
-    const Vec3 ab = model.nodes[b] - model.nodes[a], ac = model.nodes[c] - model.nodes[a];
-    if (ab.cross(ac).norm() <= 1e-10 * std::max(ab.squaredNorm(), ac.squaredNorm()))
-      faults.add("{}: has no area", faults.element("membrane", i, model.membranes[i].group));
+template <class Facets>
+void check_areas(const Model& model, const Facets& facets, const char* kind, Faults& faults) {
+  for (std::size_t i = 0; i < facets.size(); ++i) {
+    const auto& nodes = facets[i].nodes;
+    const int n = nodes.size();
+    Vec3 normal = Vec3::Zero();
+    for (int k = 0; k < n; ++k) {
+      const Vec3& here = model.nodes[nodes[k]];
+      const Vec3 out = model.nodes[nodes[(k + 1) % n]] - here,
+                 in = model.nodes[nodes[(k + n - 1) % n]] - here;
+      const Vec3 corner = out.cross(in);
+      const bool flat = corner.norm() <= 1e-10 * std::max(out.squaredNorm(), in.squaredNorm());
+      if (flat && n == 3) {
+        faults.add("{}: has no area", faults.element(kind, i, facets[i].group));
+        break;
+      }
+      if (k > 0 && n == 4 && (flat || corner.dot(normal) <= 0)) {
+        faults.add("{}: is not convex, or its nodes are not in order around it",
+                   faults.element(kind, i, facets[i].group));
+        break;
+      }
+      normal = corner;
+    }
   }
+}
+
+/// A follower follows one leader; the faces of a sector lead by no other link.
+void check_links(const Model& model, Faults& faults) {
+  std::vector<int> followed(model.nodes.size(), 0);
+  const auto count = [&](const auto& pairs) {
+    for (const auto& pair : pairs) ++followed[pair.follower];
+  };
+  count(model.links);
+  count(model.cyclic_pairs);
+  for (std::size_t i = 0; i < followed.size(); ++i)
+    if (followed[i] > 1)
+      faults.add("node {} follows {} other nodes through links: it can follow one only", i + 1, followed[i]);
+  const auto chain = [&](const auto& pairs) {
+    for (const auto& pair : pairs)
+      if (followed[pair.leader] > 0)
+        faults.add(
+            "node {} leads node {} through a link and follows another node itself: link both to the "
+            "same node",
+            pair.leader + 1, pair.follower + 1);
+  };
+  chain(model.cyclic_pairs);
+  links_in_order(model);
+  for (const auto& support : model.supports)
+    for (const int node : support.nodes) {
+      const bool held = support.fixed[0] || support.fixed[1] || support.fixed[2];
+      if (held && followed[node] > 0)
+        faults.add(
+            "support \"{}\" holds node {}, which follows another node through a link: support that one",
+            support.name, node + 1);
+    }
 }
 
 void check_connection(const Model& model, Faults& faults) {
   std::vector<bool> used(model.nodes.size(), false);
-  for (const auto& element : model.cables)
-    for (const int node : element.nodes) used[node] = true;
-  for (const auto& element : model.beams)
-    for (const int node : element.nodes) used[node] = true;
-  for (const auto& element : model.membranes)
-    for (const int node : element.nodes) used[node] = true;
+  for_each_kind(model, [&](const auto& elements) {
+    for (const auto& element : elements)
+      for (const int node : element.nodes) used[node] = true;
+  });
+  for (const auto& link : model.links) used[link.leader] = used[link.follower] = true;
   for (std::size_t i = 0; i < used.size(); ++i)
     if (!used[i]) faults.add("node {} belongs to no element: remove it or connect it", i + 1);
-  if (model.supports.empty())
+  const bool grounded = std::any_of(model.springs.begin(), model.springs.end(),
+                                    [](const Spring& spring) { return spring.grounded(); });
+  if (model.supports.empty() && !grounded)
     faults.add("nothing is supported: the structure can move as a rigid body; add an entry to \"supports\"");
 }
 
@@ -111,8 +167,13 @@ void validate(const Model& model) {
   check_elements(model, model.cables, "cable", ElementKind::cable, smallest, faults);
   check_elements(model, model.beams, "beam", ElementKind::beam, smallest, faults);
   check_elements(model, model.membranes, "membrane", ElementKind::membrane, smallest, faults);
+  check_elements(model, model.shells, "shell", ElementKind::shell, smallest, faults);
+  check_elements(model, model.springs, "spring", ElementKind::spring, 0, faults);
+  check_elements(model, model.masses, "mass", ElementKind::mass, 0, faults);
   faults.raise();
-  check_areas(model, faults);
+  check_areas(model, model.membranes, "membrane", faults);
+  check_areas(model, model.shells, "shell", faults);
+  check_links(model, faults);
   check_connection(model, faults);
   faults.raise();
 }

@@ -91,7 +91,7 @@ Field pick(const Field& field, const std::vector<int>& index) {
 }  // namespace
 
 FieldGrid extract_piece(const FieldGrid& grid, const std::vector<int>& owner, int rank) {
-  if (owner.size() != grid.lines.size() + grid.triangles.size())
+  if (owner.size() != grid.lines.size() + grid.facets.size())
     throw std::invalid_argument("extract_piece: one owner for each cell is needed");
   check_fields(grid.point_fields, grid.points.size(), "points", "a piece");
   check_fields(grid.cell_fields, owner.size(), "cells", "a piece");
@@ -113,8 +113,10 @@ FieldGrid extract_piece(const FieldGrid& grid, const std::vector<int>& owner, in
       const auto& line = grid.lines[cell];
       piece.lines.push_back({localise(line[0]), localise(line[1])});
     } else {
-      const auto& triangle = grid.triangles[cell - grid.lines.size()];
-      piece.triangles.push_back({localise(triangle[0]), localise(triangle[1]), localise(triangle[2])});
+      const auto& facet = grid.facets[cell - grid.lines.size()];
+      const int a = localise(facet[0]), b = localise(facet[1]), c = localise(facet[2]);
+      piece.facets.push_back(facet.size() == 3 ? model::FacetNodes(a, b, c)
+                                               : model::FacetNodes(a, b, c, localise(facet[3])));
     }
   }
   for (const auto& field : grid.point_fields) piece.point_fields.push_back(pick(field, points));
@@ -127,7 +129,7 @@ FieldSeries::FieldSeries(std::string directory, int rank, int size)
 
 void FieldSeries::write(const std::string& name, const FieldGrid& piece) {
   check_fields(piece.point_fields, piece.points.size(), "points", name);
-  check_fields(piece.cell_fields, piece.lines.size() + piece.triangles.size(), "cells", name);
+  check_fields(piece.cell_fields, piece.lines.size() + piece.facets.size(), "cells", name);
   const std::string stem = file_stem(name), folder = directory_ + "/fields";
   const std::string file = stem + (size_ == 1 ? ".vtu" : ".pvtu");
   if (std::find(written_.begin(), written_.end(), file) != written_.end())

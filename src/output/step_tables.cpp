@@ -122,8 +122,28 @@ std::vector<Table> group_tables(const Json& groups) {
   static constexpr Column membranes[] = {
       {"count", "count"}, {"principal_min", "least"}, {"principal_max", "largest", 1, true}};
   add_group_table(tables, groups, "Cables, tension [N]", "tension_max", cables);
-  add_group_table(tables, groups, "Beams, forces [N, N m]", "axial_max", beams);
-  add_group_table(tables, groups, "Membranes, principal [N/m]", "principal_max", membranes);
+  static constexpr Column shells[] = {{"count", "count"},
+                                      {"principal_min", "least"},
+                                      {"principal_max", "largest", 1, true},
+                                      {"moment_max", "largest moment [N]", 1, false, rounding}};
+  static constexpr Column springs[] = {{"count", "count"},
+                                       {"force_max", "largest force"},
+                                       {"moment_max", "largest moment", 1, false, rounding}};
+  const auto those = [&](const char* key, const char* but) {
+    Json result = Json::object();
+    for (const auto& [name, group] : groups.items())
+      if (!member(group, key).is_null() && member(group, but).is_null()) result[name] = group;
+    return result;
+  };
+  add_group_table(tables, those("axial_max", "tension_max"), "Beams, forces [N, N m]", "axial_max", beams);
+  add_group_table(tables, those("principal_max", "moment_max"), "Membranes, principal [N/m]", "principal_max",
+                  membranes);
+  Json bent = Json::object();
+  for (const auto& [name, group] : groups.items())
+    if (!member(group, "principal_max").is_null() && !member(group, "moment_max").is_null())
+      bent[name] = group;
+  add_group_table(tables, bent, "Shells, principal [N/m]", "principal_max", shells);
+  add_group_table(tables, groups, "Springs, forces [N, N m]", "force_max", springs);
   return tables;
 }
 

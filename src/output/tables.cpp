@@ -54,15 +54,13 @@ void label_by_elements(std::vector<std::string>& labels, const Elements& element
     for (const int node : element.nodes) label(labels, node, groups[static_cast<std::size_t>(element.group)]);
 }
 
-/// The first selection that lists the node; else the group of the first cable, beam or membrane at it.
+/// The first selection that lists the node; else the group of the first element at it.
 std::vector<std::string> node_labels(const model::Model& model) {
   std::vector<std::string> labels(model.nodes.size());
   for (const auto& [name, selection] : model.selections)
     for (const int node : selection.nodes) label(labels, node, cell(name));
   const auto groups = group_cells(model);
-  label_by_elements(labels, model.cables, groups);
-  label_by_elements(labels, model.beams, groups);
-  label_by_elements(labels, model.membranes, groups);
+  model::for_each_kind(model, [&](const auto& elements) { label_by_elements(labels, elements, groups); });
   return labels;
 }
 
@@ -85,13 +83,18 @@ void write_form_finding_nodes(const std::string& path, const model::Model& struc
 
 void write_nodes(const std::string& path, const model::Model& model, const model::State& state) {
   require_size(path, "displacements", state.displacement.size(), model.nodes.size());
-  Table table("id,group,x_ref,y_ref,z_ref,x,y,z,ux,uy,uz");
+  Table table("id,group,x_ref,y_ref,z_ref,x,y,z,ux,uy,uz,rx,ry,rz");
   const auto labels = node_labels(model);
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
     const Vec3 &x_ref = model.nodes[i], &u = state.displacement[i];
     const Vec3 x_cur = x_ref + u;
-    table.row("{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}", i + 1,
-              labels[i], x_ref[0], x_ref[1], x_ref[2], x_cur[0], x_cur[1], x_cur[2], u[0], u[1], u[2]);
+    const Eigen::AngleAxisd turn(state.rotation[i]);
+    const Vec3 r = turn.angle() * turn.axis();
+    table.row(
+        "{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.10g},{:.10g},{:."
+        "10g}",
+        i + 1, labels[i], x_ref[0], x_ref[1], x_ref[2], x_cur[0], x_cur[1], x_cur[2], u[0], u[1], u[2], r[0],
+        r[1], r[2]);
   }
   table.write(path);
 }
@@ -127,6 +130,74 @@ void write_beams(const std::string& path, const model::Model& model, const model
   table.write(path);
 }
 
+namespace {
+
+const char* name_of(element::MembraneState state) {
+  constexpr const char* names[] = {"taut", "wrinkled", "slack"};
+  return names[static_cast<int>(state)];
+}
+
+std::string node_cells(const model::FacetNodes& n) {
+  return fmt::format("{},{},{},{}", n[0] + 1, n[1] + 1, n[2] + 1,
+                     n.size() == 4 ? std::to_string(n[3] + 1) : "");
+}
+
+}  // namespace
+
+void write_membranes(const std::string& path, const model::Model& model, const model::Response& response) {
+  require_size(path, "membrane results", response.membranes.size(), model.membranes.size());
+  Table table("id,group,node_1,node_2,node_3,node_4,principal_1,principal_2,state");
+  const auto groups = group_cells(model);
+  for (std::size_t i = 0; i < model.membranes.size(); ++i) {
+    const auto& membrane = model.membranes[i];
+    const auto& result = response.membranes[i];
+    table.row("{},{},{},{:.10g},{:.10g},{}", i + 1, groups[static_cast<std::size_t>(membrane.group)],
+              node_cells(membrane.nodes), result.principal_cauchy[0], result.principal_cauchy[1],
+              name_of(result.state));
+  }
+  table.write(path);
+}
+
+void write_shells(const std::string& path, const model::Model& model, const model::Response& response) {
+  require_size(path, "shell results", response.shells.size(), model.shells.size());
+  Table table("id,group,node_1,node_2,node_3,node_4,n11,n22,n12,m11,m22,m12,q1,q2");
+  const auto groups = group_cells(model);
+  for (std::size_t i = 0; i < model.shells.size(); ++i) {
+    const auto& f = response.shells[i];
+    table.row("{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}", i + 1,
+              groups[static_cast<std::size_t>(model.shells[i].group)], node_cells(model.shells[i].nodes),
+              f.membrane[0], f.membrane[1], f.membrane[2], f.moment[0], f.moment[1], f.moment[2], f.shear[0],
+              f.shear[1]);
+  }
+  table.write(path);
+}
+
+void write_springs(const std::string& path, const model::Model& model, const model::Response& response) {
+  require_size(path, "spring results", response.springs.size(), model.springs.size());
+  Table table("id,group,node_1,node_2,fx,fy,fz,mx,my,mz");
+  const auto groups = group_cells(model);
+  for (std::size_t i = 0; i < model.springs.size(); ++i) {
+    const auto& spring = model.springs[i];
+    const auto& r = response.springs[i];
+    const std::string second = spring.grounded() ? "" : std::to_string(spring.nodes[1] + 1);
+    table.row("{},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}", i + 1,
+              groups[static_cast<std::size_t>(spring.group)], spring.nodes[0] + 1, second, r.force[0],
+              r.force[1], r.force[2], r.moment[0], r.moment[1], r.moment[2]);
+  }
+  table.write(path);
+}
+
+void write_reactions(const std::string& path, const model::Model& model, const Points& force,
+                     const Points& moment) {
+  require_size(path, "reactions", force.size(), model.nodes.size());
+  Table table("node,fx,fy,fz,mx,my,mz");
+  for (std::size_t i = 0; i < force.size(); ++i)
+    if (!force[i].isZero(0) || !moment[i].isZero(0))
+      table.row("{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}", i + 1, force[i][0], force[i][1],
+                force[i][2], moment[i][0], moment[i][1], moment[i][2]);
+  table.write(path);
+}
+
 void write_cut_list(const std::string& path, const model::Model& model, const model::Response& response) {
   require_size(path, "cable results", response.cables.size(), model.cables.size());
   struct Cut {
@@ -136,6 +207,7 @@ void write_cut_list(const std::string& path, const model::Model& model, const mo
   std::map<std::pair<int, int>, Cut> cuts;
   for (std::size_t i = 0; i < model.cables.size(); ++i) {
     const auto& cable = model.cables[i];
+    if (model.groups[static_cast<std::size_t>(cable.group)].kind == model::ElementKind::bar) continue;
     const double length = model.unstressed_length(cable);
     auto& cut = cuts[{cable.group, cable.parent}];
     cut.unstressed_length += length;

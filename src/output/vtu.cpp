@@ -40,14 +40,14 @@ void fill(vtkUnstructuredGrid* target, const FieldGrid& grid) {
   for (std::size_t i = 0; i < grid.points.size(); ++i)
     points->SetPoint(static_cast<vtkIdType>(i), grid.points[i].data());
   target->SetPoints(points);
-  target->Allocate(static_cast<vtkIdType>(grid.lines.size() + grid.triangles.size()));
+  target->Allocate(static_cast<vtkIdType>(grid.lines.size() + grid.facets.size()));
   for (const auto& line : grid.lines) {
     const vtkIdType nodes[] = {line[0], line[1]};
     target->InsertNextCell(VTK_LINE, 2, nodes);
   }
-  for (const auto& triangle : grid.triangles) {
-    const vtkIdType nodes[] = {triangle[0], triangle[1], triangle[2]};
-    target->InsertNextCell(VTK_TRIANGLE, 3, nodes);
+  for (const auto& facet : grid.facets) {
+    const std::array<vtkIdType, 4> nodes{facet[0], facet[1], facet[2], facet[3]};
+    target->InsertNextCell(facet.size() == 3 ? VTK_TRIANGLE : VTK_QUAD, facet.size(), nodes.data());
   }
   add_fields(target->GetPointData(), grid.point_fields);
   add_fields(target->GetCellData(), grid.cell_fields);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -19,40 +20,62 @@ namespace {
 /// Adds elements of one group; the kind follows from the group's section.
 class ElementAdder {
  public:
-  ElementAdder(model::Model& model, const std::string& group)
+  ElementAdder(model::Model& model, const std::string& group, const deck::Deck& deck)
       : model_(model), group_(model.find_group(group)) {
     if (group_ < 0)
       throw ModelError(
           fmt::format("group \"{}\" has elements but no section: give it one under \"groups\"", group));
+    section_ = &deck.sections.at(deck.groups.at(group).section);
   }
 
-  void line(const std::array<int, 2>& nodes) {
-    switch (model_.groups[group_].kind) {
-      case model::ElementKind::cable:
-        model_.cables.push_back({nodes, group_});
-        return;
-      case model::ElementKind::beam:
-        model_.beams.push_back({nodes, group_});
-        return;
-      case model::ElementKind::membrane:
-        throw wrong("lines", "a membrane");
-    }
-  }
-
-  void triangle(const std::array<int, 3>& nodes) {
-    if (model_.groups[group_].kind != model::ElementKind::membrane)
-      throw wrong("triangles", "a cable or beam");
-    model_.membranes.push_back({nodes, group_});
+  void operator()(const std::vector<int>& n) const {
+    using model::ElementKind;
+    const auto kind = model_.groups[group_].kind;
+    const std::size_t size = n.size();
+    if (model::is_cable_like(kind) && size == 2)
+      model_.cables.push_back({{n[0], n[1]}, group_});
+    else if (kind == ElementKind::beam && size == 2)
+      model_.beams.push_back({{n[0], n[1]}, group_});
+    else if (kind == ElementKind::membrane && (size == 3 || size == 4))
+      model_.membranes.push_back({facet(n), group_});
+    else if (kind == ElementKind::shell && (size == 3 || size == 4))
+      add_shell(n);
+    else if (kind == ElementKind::spring && size <= 2)
+      model_.springs.push_back({n, group_});
+    else if (kind == ElementKind::mass && size == 1)
+      model_.masses.push_back({{n[0]}, group_});
+    else if (kind == ElementKind::link && size == 2)
+      add_link(n[0], n[1]);
+    else
+      throw ModelError(fmt::format("group \"{}\" has elements of {} node{}, which its section is not for",
+                                   model_.groups[group_].name, size, size == 1 ? "" : "s"));
   }
 
  private:
-  ModelError wrong(const char* cells, const char* section) const {
-    return ModelError(fmt::format("group \"{}\" has {} but its section is for {}", model_.groups[group_].name,
-                                  cells, section));
+  static model::FacetNodes facet(const std::vector<int>& n) {
+    return n.size() == 3 ? model::FacetNodes(n[0], n[1], n[2]) : model::FacetNodes(n[0], n[1], n[2], n[3]);
+  }
+
+  void add_shell(const std::vector<int>& n) const {
+    auto& shell = model_.shells.emplace_back();
+    shell.nodes = facet(n);
+    shell.group = group_;
+  }
+
+  void add_link(int leader, int follower) const {
+    model::Link link{leader, follower, false, {}, group_};
+    if (const auto* rigid = std::get_if<model::RigidLinkSectionOptions>(section_))
+      link.rotation_free = !rigid->rotation;
+    if (const auto* hinge = std::get_if<model::HingeSectionOptions>(section_)) {
+      link.rotation_free = !hinge->axis;
+      if (hinge->axis) link.hinge = {hinge->axis->normalized()};
+    }
+    model_.links.push_back(link);
   }
 
   model::Model& model_;
   int group_;
+  const model::SectionOptions* section_;
 };
 
 void declare_groups(model::Model& model, const deck::Deck& deck) {
@@ -63,6 +86,11 @@ void declare_groups(model::Model& model, const deck::Deck& deck) {
   }
 }
 
+void add_edge(model::Selection& selection, const std::array<int, 2>& edge) {
+  selection.edges.push_back(edge);
+  selection.nodes.insert(selection.nodes.end(), edge.begin(), edge.end());
+}
+
 void add_inline(model::Model& model, const model::ModelOptions& options, const deck::Deck& deck) {
   std::map<std::string, int> index;
   for (const auto& [name, position] : options.nodes) {
@@ -70,36 +98,56 @@ void add_inline(model::Model& model, const model::ModelOptions& options, const d
     model.nodes.push_back(position);
   }
   for (const auto& block : options.elements) {
-    ElementAdder add(model, block.group);
+    ElementAdder add(model, block.group, deck);
     for (const auto& names : block.connectivity) {
-      if (names.size() == 2)
-        add.line({index.at(names[0]), index.at(names[1])});
-      else
-        add.triangle({index.at(names[0]), index.at(names[1]), index.at(names[2])});
+      std::vector<int> nodes;
+      for (const auto& name : names) nodes.push_back(index.at(name));
+      add(nodes);
     }
   }
-  for (const auto& [name, group] : deck.groups)
+  for (const auto& [name, group] : deck.groups) {
     for (const auto& node : group.nodes) model.selections[name].nodes.push_back(index.at(node));
+    for (const auto& [a, b] : group.edges) add_edge(model.selections[name], {index.at(a), index.at(b)});
+  }
+  for (const auto& constraint : options.constraints) {
+    auto& terms = model.constraints.emplace_back().terms;
+    for (const auto& term : constraint.terms)
+      terms.push_back({index.at(term.node), term.component, term.coefficient});
+  }
 }
 
-void add_mesh(model::Model& model, const std::string& file) {
+void add_mesh(model::Model& model, const std::string& file, const deck::Deck& deck) {
   const auto mesh = mesh::import_gmsh(file);
   const int offset = static_cast<int>(model.nodes.size());
   model.nodes.insert(model.nodes.end(), mesh.nodes.begin(), mesh.nodes.end());
   for (const auto& [name, cells] : mesh.groups) {
-    if (!cells.points.empty())
-      for (const int node : cells.points) model.selections[name].nodes.push_back(offset + node);
-    if (cells.lines.empty() && cells.triangles.empty()) continue;
-    if (model.find_group(name) < 0) {  // a physical group without section only names nodes
-      auto& nodes = model.selections[name].nodes;
-      for (const auto& line : cells.lines) nodes.insert(nodes.end(), {offset + line[0], offset + line[1]});
-      for (const auto& t : cells.triangles)
-        nodes.insert(nodes.end(), {offset + t[0], offset + t[1], offset + t[2]});
-      continue;
+    const bool has_section = model.find_group(name) >= 0;
+    const auto each = [&](const auto& list, const auto& action) {
+      for (const auto& cell : list) {
+        std::vector<int> nodes;
+        for (const int node : cell) nodes.push_back(offset + node);
+        action(nodes);
+      }
+    };
+    if (has_section) {  // points are elements only where the section wants points
+      ElementAdder add(model, name, deck);
+      const auto kind = model.groups[model.find_group(name)].kind;
+      if (kind == model::ElementKind::mass || kind == model::ElementKind::spring)
+        for (const int node : cells.points) add({offset + node});
+      each(cells.lines, add);
+      each(cells.triangles, add);
+      each(cells.quadrilaterals, add);
+      if (kind == model::ElementKind::mass || kind == model::ElementKind::spring) continue;
+    } else {  // a physical group without section only names nodes and edges
+      auto& selection = model.selections[name];
+      each(cells.lines, [&](const auto& n) { add_edge(selection, {n[0], n[1]}); });
+      const auto note = [&](const auto& n) {
+        selection.nodes.insert(selection.nodes.end(), n.begin(), n.end());
+      };
+      each(cells.triangles, note);
+      each(cells.quadrilaterals, note);
     }
-    ElementAdder add(model, name);
-    for (const auto& line : cells.lines) add.line({offset + line[0], offset + line[1]});
-    for (const auto& t : cells.triangles) add.triangle({offset + t[0], offset + t[1], offset + t[2]});
+    for (const int node : cells.points) model.selections[name].nodes.push_back(offset + node);
   }
 }
 
@@ -120,7 +168,10 @@ void check_sections(const model::Model& model, const deck::Deck& deck) {
     const auto in = [&](const auto& elements) {
       return std::any_of(elements.begin(), elements.end(), [&](const auto& e) { return e.group == group; });
     };
-    if (!options.section.empty() && !in(model.cables) && !in(model.beams) && !in(model.membranes))
+    bool used = std::any_of(model.links.begin(), model.links.end(),
+                            [&](const model::Link& link) { return link.group == group; });
+    model::for_each_kind(model, [&](const auto& elements) { used = used || in(elements); });
+    if (!options.section.empty() && !used)
       throw ModelError(fmt::format(
           "{}:{}:{}: group \"{}\" has a section but no elements: the structure has none of that name",
           options.where.file, options.where.line, options.where.column, name));
@@ -134,7 +185,70 @@ void give_sections(model::Model& model, const deck::Deck& deck) {
     model::set_section(group, deck.sections.at(options.section), deck.materials);
     if (options.orientation) group.orientation = *options.orientation;
     if (options.tension) group.target_tension = *options.tension;
-    model::set_initial_state(model, static_cast<int>(i), options);
+    double thickness = group.shell.thickness;
+    if (const auto* cloth = std::get_if<model::MembraneSectionOptions>(&deck.sections.at(options.section)))
+      thickness = cloth->thickness.value_or(0);
+    model::set_initial_state(model, static_cast<int>(i), options, thickness);
+  }
+}
+
+void find_frames(model::Model& model) {
+  for (auto& beam : model.beams) {
+    Mat<3, 2> x;
+    x << model.nodes[beam.nodes[0]], model.nodes[beam.nodes[1]];
+    beam.frame = element::beam_frame(x, model.groups[beam.group].orientation);
+  }
+}
+
+/// Hangs the end of a beam on its node by an arm, a hinge, or both.
+void detach_end(model::Model& model, model::Beam& beam, int end, const Vec3& offset,
+                const model::EndRelease& release) {
+  const auto& free = release.free;
+  model::Link link{
+      beam.nodes[end], static_cast<int>(model.nodes.size()), free[0] && free[1] && free[2], {}, -1};
+  for (int axis = 0; axis < 3 && !link.rotation_free; ++axis)
+    if (free[axis]) link.hinge.push_back(beam.frame.col(axis));
+  model.nodes.push_back(model.nodes[link.leader] + offset);
+  model.links.push_back(link);
+  beam.nodes[end] = link.follower;
+}
+
+/// Offsets and releases of beam ends; frames follow the beams between their offset ends.
+void detach_beams(model::Model& model, const deck::Deck& deck) {
+  const std::size_t n_beams = model.beams.size();
+  for (std::size_t i = 0; i < n_beams; ++i) {
+    auto& beam = model.beams[i];
+    const auto& options = deck.groups.at(model.groups[beam.group].name);
+    const std::array offset{options.offset_start, options.offset_end};
+    const std::array release{options.release_start, options.release_end};
+    Mat<3, 2> x;
+    x << model.nodes[beam.nodes[0]] + offset[0], model.nodes[beam.nodes[1]] + offset[1];
+    beam.frame = element::beam_frame(x, model.groups[beam.group].orientation);
+    for (int end = 0; end < 2; ++end)
+      if (!offset[end].isZero(0) || release[end].any())
+        detach_end(model, beam, end, offset[end], release[end]);
+  }
+}
+
+/// Finds for every node of `to` the one of `from` that the turn brings there.
+void add_cyclic(model::Model& model, const model::CyclicOptions& options) {
+  const Mat3 turn =
+      Eigen::AngleAxisd(options.angle * std::numbers::pi / 180, options.axis.normalized()).toRotationMatrix();
+  const auto leaders = model.nodes_of(options.from);
+  double size = 0;
+  for (const auto& node : model.nodes) size = std::max(size, (node - options.centre).norm());
+  for (const int follower : model.nodes_of(options.to)) {
+    const Vec3 wanted = options.centre + turn.transpose() * (model.nodes[follower] - options.centre);
+    const auto found = std::find_if(leaders.begin(), leaders.end(), [&](int node) {
+      return (model.nodes[node] - wanted).norm() <= 1e-6 * size;
+    });
+    if (found == leaders.end())
+      throw ModelError(
+          fmt::format("{}:{}:{}: node {} of \"to\" has no partner among the nodes of \"from\" turned "
+                      "by {} degrees: it would be at ({:g}, {:g}, {:g})",
+                      options.where.file, options.where.line, options.where.column, follower + 1,
+                      options.angle, wanted.x(), wanted.y(), wanted.z()));
+    if (*found != follower) model.cyclic_pairs.push_back({*found, follower, turn});
   }
 }
 
@@ -148,6 +262,47 @@ std::vector<int> look_up(const model::Model& model, const std::vector<std::strin
   }
 }
 
+/// A load on elements needs elements that it can act on.
+void check_load_place(const model::Model& model, const model::LoadOptions& options) {
+  const auto refuse = [&](const std::string& name, const char* key, const char* needs) {
+    throw ModelError(fmt::format("{}:{}:{}: load \"{}\": \"{}\" has no {}, on which {} acts",
+                                 options.where.file, options.where.line, options.where.column, options.name,
+                                 name, needs, key));
+  };
+  for (const auto& name : options.on) {
+    const auto selected = model.select(name);
+    const bool facets = !selected.membranes.empty() || !selected.shells.empty();
+    const bool lines = !selected.beams.empty() || !selected.edges.empty();
+    if (options.pressure && !facets) refuse(name, "pressure", "membranes or shells");
+    if (options.surface_force && !facets) refuse(name, "surface_force", "membranes or shells");
+    if (options.line_force && !lines && selected.cables.empty())
+      refuse(name, "line_force", "beams, cables, bars or edges");
+    if (options.line_moment && !lines) refuse(name, "line_moment", "beams or edges");
+    if (options.temperature_change && model.find_group(name) < 0)
+      refuse(name, "temperature_change", "group of elements");
+  }
+}
+
+model::Load make_load(const model::Model& model, const model::LoadOptions& options) {
+  model::Load load;
+  load.name = options.name;
+  load.on = options.on;
+  if (options.nodal()) load.nodes = look_up(model, options.on, options.where);
+  look_up(model, options.on, options.where);
+  check_load_place(model, options);
+  load.force = options.force;
+  load.moment = options.moment;
+  load.displacement = options.displacement;
+  load.rotation = options.rotation;
+  load.line_force = options.line_force.value_or(Vec3::Zero());
+  load.line_moment = options.line_moment.value_or(Vec3::Zero());
+  load.surface_force = options.surface_force.value_or(Vec3::Zero());
+  load.pressure = options.pressure.value_or(0);
+  load.temperature_change = options.temperature_change.value_or(0);
+  load.acceleration = options.acceleration.value_or(Vec3::Zero());
+  return load;
+}
+
 }  // namespace
 
 model::Model build_structure(const deck::Deck& deck) {
@@ -157,21 +312,19 @@ model::Model build_structure(const deck::Deck& deck) {
   } else {
     declare_groups(model, deck);
     add_inline(model, *deck.model, deck);
-    if (!deck.model->mesh_file.empty()) add_mesh(model, deck.model->mesh_file);
+    if (!deck.model->mesh_file.empty()) add_mesh(model, deck.model->mesh_file, deck);
   }
   check_sections(model, deck);
   give_sections(model, deck);
-  for (auto& beam : model.beams) {
-    Mat<3, 2> x;
-    x << model.nodes[beam.nodes[0]], model.nodes[beam.nodes[1]];
-    beam.frame = element::beam_frame(x, model.groups[beam.group].orientation);
+  find_frames(model);
+  if (deck.model) {
+    detach_beams(model, deck);
+    for (const auto& cyclic : deck.model->cyclic) add_cyclic(model, cyclic);
   }
   for (const auto& support : deck.supports)
     model.supports.push_back(
-        {support.name, support.on, look_up(model, support.on, support.where), support.fixed});
-  for (const auto& load : deck.loads)
-    if (!load.on.empty())
-      model.loads.push_back({load.name, look_up(model, load.on, load.where), load.force, load.moment});
+        {support.name, support.on, look_up(model, support.on, support.where), support.fixed, support.axes});
+  for (const auto& options : deck.loads) model.loads.push_back(make_load(model, options));
   return model;
 }
 

@@ -12,12 +12,15 @@ namespace {
 
 std::string model_text(const model::Model& model) {
   std::string text =
-      fmt::format("structure  {} nodes, {} cables, {} beams, {} membranes, {:.4g} kg\n", model.nodes.size(),
-                  model.cables.size(), model.beams.size(), model.membranes.size(), model::total_mass(model));
+      fmt::format("structure  {} nodes, {} cables, {} beams, {} membranes, {} shells, {:.4g} kg\n",
+                  model.nodes.size(), model.cables.size(), model.beams.size(), model.membranes.size(),
+                  model.shells.size(), model::total_mass(model));
   for (const auto& [name, mass] : model::mass_by_group(model)) {
     const auto selection = model.select(name);
     text += fmt::format("  {:<20} {:>6} elements {:>12.4g} kg\n", name,
-                        selection.cables.size() + selection.beams.size() + selection.membranes.size(), mass);
+                        selection.cables.size() + selection.beams.size() + selection.membranes.size() +
+                            selection.shells.size() + selection.springs.size() + selection.masses.size(),
+                        mass);
   }
   return text;
 }

@@ -23,6 +23,7 @@ Context::Context(const deck::Deck& the_deck, std::string directory, bool picture
       root_(la::rank() == 0),
       fields_(directory_, la::rank(), la::size()) {
   model::validate(structure);
+  model::find_directors(structure);
   if (deck.reflector) surface = reflector::make_paraboloid(*deck.reflector);
 }
 
@@ -82,7 +83,7 @@ void Context::write_fields(const std::string& name, const output::FieldGrid& gri
   const auto& ranks = system().dof_map().node_rank;
   std::vector<int> owner;
   for (const auto& line : grid.lines) owner.push_back(ranks[line[0]]);
-  for (const auto& triangle : grid.triangles) owner.push_back(ranks[triangle[0]]);
+  for (const auto& facet : grid.facets) owner.push_back(ranks[facet[0]]);
   fields_.write(name, output::extract_piece(grid, owner, la::rank()));
 }
 
@@ -90,24 +91,30 @@ assembly::Boundary Context::boundary(const std::vector<std::string>& hold, bool 
   const auto& model = system_->model();
   assembly::Boundary boundary;
   boundary.supports = model.supports;
-  if (!hold.empty()) boundary.supports.push_back({"held", hold, model.nodes_of(hold)});
+  if (!hold.empty()) {
+    auto& held = boundary.supports.emplace_back();
+    held.name = "held";
+    held.on = hold;
+    held.nodes = model.nodes_of(hold);
+  }
   if (!loaded) return boundary;
   const auto acts = [&](const std::string& name) {
     return std::find(acting_loads.begin(), acting_loads.end(), name) != acting_loads.end();
   };
   for (const auto& load : model.loads)
     if (acts(load.name)) boundary.loads.push_back(load);
-  for (const auto& load : deck.loads)
-    if (load.acceleration && acts(load.name)) boundary.acceleration += *load.acceleration;
   return boundary;
 }
 
-analysis::PathSummary follow(Context& context, const std::string& what) {
-  const auto report = [&](double lambda, int iteration, double residual) {
+analysis::PathSummary follow(Context& context, const std::string& what, int increments,
+                             const std::function<void(double)>& converged) {
+  const auto tell = [&](double lambda, int iteration, double residual) {
     context.progress.update(fmt::format("{} | {}: lambda {:.4g}, iteration {}, residual {:.1e}",
                                         context.step_name, what, lambda, iteration, residual));
   };
-  return analysis::follow_path(context.system(), context.workspace(), context.deck.solver, report);
+  auto options = context.deck.solver;
+  options.increments = increments;
+  return analysis::follow_path(context.system(), context.workspace(), options, {tell, converged});
 }
 
 }  // namespace tautline::steps

@@ -4,6 +4,7 @@
 /// results go.
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -85,7 +86,9 @@ Json run_step(Context& context, const EquilibriumOptions& options);
 Json run_step(Context& context, const TuningStepOptions& options);
 Json run_step(Context& context, const ModalOptions& options);
 
-/// Follows the path of a stage that was begun, with progress on the live line.
-analysis::PathSummary follow(Context& context, const std::string& what);
+/// Follows the path of a stage that was begun, with progress on the live line; stops at lambda = k /
+/// increments at least and calls `converged(lambda)` wherever it comes to rest.
+analysis::PathSummary follow(Context& context, const std::string& what, int increments = 1,
+                             const std::function<void(double)>& converged = {});
 
 }  // namespace tautline::steps

@@ -1,4 +1,6 @@
+#include <map>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -38,19 +40,160 @@ Json newton_table(const analysis::PathSummary& path) {
   return table;
 }
 
+Json triple(const Vec3& v) {
+  return {v[0], v[1], v[2]};
+}
+
+Json vector_on_grid(const Vec3& v, double size) {
+  return {on_grid(v[0], size), on_grid(v[1], size), on_grid(v[2], size)};
+}
+
+/// Force and moment of a support, with the sums of magnitudes whose rounding they carry.
+struct Reaction {
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+  double force_size = 0, moment_size = 0;
+
+  void add(const Vec3& f, const Vec3& m) {
+    force += f;
+    moment += m;
+    force_size += f.norm();
+    moment_size += m.norm();
+  }
+  /// Rounding of the larger reactions elsewhere is nothing of its own.
+  Json json(double largest_force, double largest_moment) const {
+    const auto shown = [](const Vec3& v, double size, double largest) {
+      return size > 1e-12 * largest ? vector_on_grid(v, size) : triple(Vec3::Zero());
+    };
+    return {{"force", shown(force, force_size, largest_force)},
+            {"moment", shown(moment, moment_size, largest_moment)}};
+  }
+};
+
+/// Mean displacement and rotation vector of the nodes of each name.
+Json monitors(const assembly::System& system, const std::vector<std::string>& names) {
+  Json result = Json::object();
+  for (const auto& name : names) {
+    const auto nodes = system.model().nodes_of({name});
+    Vec3 u = Vec3::Zero(), r = Vec3::Zero();
+    for (const int node : nodes) {
+      const Eigen::AngleAxisd turn(system.state().rotation[node]);
+      u += system.state().displacement[node] / static_cast<double>(nodes.size());
+      r += turn.angle() * turn.axis() / static_cast<double>(nodes.size());
+    }
+    result[name] = {{"displacement", vector_on_grid(u, 1e-3 * system.size())}, {"rotation", vector_on_grid(r, 1e-3)}};
+  }
+  return result;
+}
+
+/// Sums of force and of moment about the origin.
+struct Resultant {
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+  double size = 0, moment_size = 0;  ///< sums of magnitudes
+
+  void add(const Vec3& at, const Vec3& f, const Vec3& m) {
+    const Vec3 turn = at.cross(f) + m;
+    force += f;
+    moment += turn;
+    size += f.norm();
+    moment_size += turn.norm();
+  }
+};
+
+/// The part of a reaction along the directions that a support holds and no support before it held.
+class Claims {
+ public:
+  Vec3 take(const Mat3& axes, const bool* fixed, const Vec3& reaction) {
+    Vec3 part = Vec3::Zero();
+    for (int c = 0; c < 3; ++c) {
+      if (!fixed[c]) continue;
+      Vec3 direction = axes.col(c);
+      for (const Vec3& known : taken_) direction -= known * known.dot(direction);
+      if (direction.norm() < 1e-8) continue;
+      taken_.push_back(direction.normalized());
+      part += taken_.back() * taken_.back().dot(reaction);
+    }
+    return part;
+  }
+
+ private:
+  std::vector<Vec3> taken_;
+};
+
+/// A direction of a node that two supports hold counts for the first. Grounded springs are told by group.
+Json reactions_json(const assembly::System& system, const assembly::Boundary& boundary,
+                    const assembly::System::NodalForces& reactions) {
+  std::map<int, std::array<Claims, 2>> claims;  // by node: of forces, of moments
+  std::vector<std::pair<std::string, Reaction>> list;
+  for (const auto& support : boundary.supports) {
+    Reaction sum;
+    for (const int node : support.nodes) {
+      auto& [of_force, of_moment] = claims[node];
+      sum.add(of_force.take(support.axes, support.fixed.data(), reactions.force[node]),
+              of_moment.take(support.axes, support.fixed.data() + 3, reactions.moment[node]));
+    }
+    list.emplace_back(support.name, sum);
+  }
+  const auto& model = system.model();
+  const auto ground = system.ground_springs();
+  std::map<std::string, std::set<int>> sprung;
+  for (const auto& spring : model.springs)
+    if (spring.grounded()) sprung[model.groups[spring.group].name].insert(spring.nodes[0]);
+  for (const auto& [name, nodes] : sprung) {
+    Reaction sum;
+    for (const int node : nodes) sum.add(ground.force[node], ground.moment[node]);
+    list.emplace_back(name, sum);
+  }
+  double force = 0, moment = 0;
+  for (const auto& [name, sum] : list) {
+    force = std::max(force, sum.force_size);
+    moment = std::max(moment, sum.moment_size);
+  }
+  Json result = Json::object();
+  for (const auto& [name, sum] : list)
+    result[name] = sum.json(force, std::max(moment, force * system.size()));
+  return result;
+}
+
+/// Loads and reactions together, over the sum of their magnitudes: zero in equilibrium. Linear constraints
+/// and cyclic pairs carry forces of their own, so that nothing is said where there are any.
+Json balance(const assembly::System& system, const assembly::System::NodalForces& reactions) {
+  const auto& model = system.model();
+  if (!model.constraints.empty() || !model.cyclic_pairs.empty()) return nullptr;
+  const auto applied = system.applied(), springs = system.ground_springs();
+  const auto positions = model::positions(model, system.state());
+  Resultant all, loads;
+  double reach = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    all.add(positions[i], reactions.force[i], reactions.moment[i]);
+    all.add(positions[i], springs.force[i], springs.moment[i]);
+    all.add(positions[i], applied.force[i], applied.moment[i]);
+    loads.add(positions[i], applied.force[i], applied.moment[i]);
+    reach = std::max(reach, positions[i].norm());
+  }
+  const auto part = [](double value, double of) { return above_rounding(of > 0 ? value / of : 0, 1e-9); };
+  return {{"applied_force", triple(loads.force)},
+          {"force", part(all.force.norm(), all.size + all.moment_size / reach)},
+          {"moment", part(all.moment.norm(), all.moment_size + all.size * reach)}};
+}
+
 /// One stage: returns its entry; `reached` says whether lambda came to 1.
 Json run_stage(Context& context, const StageOptions& stage, const assembly::Boundary& boundary,
-               bool& reached) {
+               const EquilibriumOptions& options, bool is_last, Json& way, bool& reached) {
   auto& system = context.system();
   double seconds = 0;
   auto watch = std::make_optional<Stopwatch>(seconds);
   const auto start = system.begin_stage(boundary);
   context.progress.say(fmt::format("{} | {}: out-of-balance at the start {:.3e} N", context.step_name,
                                    stage.name, start.force));
-  const auto path = follow(context, stage.name);
+  const auto path = follow(context, stage.name, is_last ? options.increments : 1, [&](double lambda) {
+    if (!is_last || (options.monitor.empty() && options.increments == 1)) return;
+    way.push_back({{"lambda", lambda},
+                   {"monitors", monitors(system, options.monitor)},
+                   {"reactions", reactions_json(system, boundary, system.reactions())}});
+  });
   watch.reset();
   reached = path.reached;
-  if ((path.singular && path.points.empty()) || path.inertia.null > 0)
+  if ((!path.reached && path.points.empty()) || path.inertia.null > 0)
     if (const auto mechanism = assembly::find_mechanism(system, context.workspace()))
       throw ModelError(fmt::format("stage \"{}\": {}", stage.name, mechanism->text));
   return {{"name", stage.name},
@@ -72,16 +215,19 @@ Json run_stage(Context& context, const StageOptions& stage, const assembly::Boun
 
 Json run_step(Context& context, const EquilibriumOptions& options) {
   auto& system = context.system();
-  if (options.reset) system.set_state(model::State::reference(system.model()));
+  if (options.reset) system.reset();
   Json entry;
   entry["status"] = "done";
   entry["stages"] = Json::array();
   const auto stages = stages_of(options);
+  Json way = Json::array();
+  assembly::Boundary boundary;
   context.acting_loads = options.loads ? *options.loads : names_of(context.deck.loads);
   for (std::size_t i = 0; i < stages.size(); ++i) {
     bool reached = true;
-    const auto boundary = context.boundary(stages[i].hold, i + 1 == stages.size());
-    entry["stages"].push_back(run_stage(context, stages[i], boundary, reached));
+    const bool is_last = i + 1 == stages.size();
+    boundary = context.boundary(stages[i].hold, is_last);
+    entry["stages"].push_back(run_stage(context, stages[i], boundary, options, is_last, way, reached));
     if (reached) continue;
     entry["status"] = "not_converged";
     entry["reason"] = fmt::format(
@@ -91,6 +237,10 @@ Json run_step(Context& context, const EquilibriumOptions& options) {
     break;
   }
   const auto response = model::evaluate_response(system.model(), system.state());
+  const auto reactions = system.reactions();
+  entry["reactions"] = reactions_json(system, boundary, reactions);
+  if (const Json sums = balance(system, reactions); !sums.is_null()) entry["balance"] = sums;
+  if (!way.empty()) entry["path"] = way;
   entry["groups"] = groups_json(model::summarise_groups(system.model(), response));
   if (context.surface) entry["surface"] = surface_json(measure(context));
   context.write_fields(context.step_name, field_grid(context, response));

@@ -24,8 +24,14 @@ std::vector<la::Vector> rigid_motions(const assembly::System& system) {
     const Vec3 axis = Vec3::Unit(k % 3);
     for (std::size_t node = 0; node < positions.size(); ++node) {
       const Vec3 motion = k < 3 ? axis : Vec3(axis.cross(positions[node]));
-      for (int c = 0; c < 3; ++c) values[3 * map.displacement_block[node] + c] = motion[c];
-      if (k >= 3 && map.rotation_block[node] >= 0) values[3 * map.rotation_block[node] + k % 3] = 1;
+      const auto set = [&](int block, const Vec3& value) {
+        if (block >= 0)
+          Eigen::Map<Vec3>(values.data() + 3 * block) = system.kinematics().unknown_of(block, value);
+      };
+      set(map.displacement_block[node], motion);
+      const int link = system.kinematics().link_of(static_cast<int>(node));
+      const bool hinge = link >= 0 && !system.model().links[link].hinge.empty();
+      if (k >= 3 && !hinge) set(map.rotation_block[node], axis);
     }
     la::Vector vector(map.layout);
     vector.write(std::span(values).subspan(3 * map.layout.first, 3 * map.layout.local));
@@ -87,9 +93,10 @@ void draw_mode(Context& context, const Points& shape, int number, double frequen
   rest.points = points;
   for (std::size_t i = 0; i < points.size(); ++i) points[i] += size * shape[i];
   surface.points = frame.points = points;
-  for (const auto& m : model.membranes) surface.triangles.push_back(m.nodes);
+  add_triangles(model.membranes, surface);
+  add_triangles(model.shells, surface);
   for (const auto& b : model.beams) frame.lines.push_back(b.nodes);
-  if (model.membranes.empty())
+  if (surface.triangles.empty())
     for (const auto& c : model.cables) surface.lines.push_back(c.nodes);
   rest.lines = frame.lines;
   rest.line_width = 1;
@@ -110,7 +117,7 @@ Json run_step(Context& context, const ModalOptions& options) {
   system.begin_stage(context.boundary({}, true));
   auto& workspace = context.workspace();
   system.tangent(workspace.tangent);
-  const auto mass = system.mass();
+  const auto mass = system.mass(options.mass);
   context.progress.update(
       fmt::format("{} | {} modes of {} unknowns", context.step_name, options.modes, system.n_dofs()));
   const auto pairs = la::solve_vibration(workspace.tangent, mass, options.modes);

@@ -78,7 +78,14 @@ std::string run_and_record(Context& context, const Step& step) {
   const auto start = Clock::now();
   const Counters before = Counters::of(context);
   Json entry{{"name", step.name}, {"kind", step.kind}};
-  entry.update(std::visit([&](const auto& options) { return run_step(context, options); }, step.options));
+  try {
+    entry.update(std::visit([&](const auto& options) { return run_step(context, options); }, step.options));
+  } catch (const std::exception& error) {  // leaves word of the step that failed
+    entry["status"] = "not_converged";
+    entry["reason"] = error.what();
+    context.results["steps"].push_back(std::move(entry));
+    throw;
+  }
   add_performance(entry, before, Counters::of(context), seconds_since(start));
   const std::string status = entry["status"];
   if (status != "done")
@@ -87,12 +94,17 @@ std::string run_and_record(Context& context, const Step& step) {
   return status;
 }
 
-void write_tables(Context& context) {
+void write_tables(Context& context, const assembly::System::NodalForces& reactions) {
   if (!context.deck.output.tables) return;
   output::write_form_finding_nodes(context.path("form_finding_nodes.csv"), context.structure);
   if (!context.has_system()) return;
   const auto& system = context.system();
-  const auto response = model::evaluate_response(system.model(), system.state());
+  const auto& model = system.model();
+  const auto response = model::evaluate_response(model, system.state());
+  if (!model.membranes.empty()) output::write_membranes(context.path("membranes.csv"), model, response);
+  if (!model.springs.empty()) output::write_springs(context.path("springs.csv"), model, response);
+  if (!model.shells.empty()) output::write_shells(context.path("shells.csv"), model, response);
+  output::write_reactions(context.path("reactions.csv"), model, reactions.force, reactions.moment);
   output::write_nodes(context.path("nodes.csv"), system.model(), system.state());
   output::write_cables(context.path("cables.csv"), system.model(), response);
   output::write_beams(context.path("beams.csv"), system.model(), response);
@@ -102,7 +114,9 @@ void write_tables(Context& context) {
 /// Closes the books: tables, results.json, report, and the summary on stdout.
 void finish(Context& context, const RunSettings& settings, Clock::time_point start) {
   context.progress.finish();
-  la::on_root([&] { write_tables(context); });
+  assembly::System::NodalForces reactions;
+  if (context.has_system()) reactions = context.system().reactions();
+  la::on_root([&] { write_tables(context, reactions); });
   context.note_model();
   context.results["wall_seconds"] = seconds_since(start);
   context.save();

@@ -15,6 +15,13 @@ double above_rounding(double value, double floor) {
   return std::max(value, floor);
 }
 
+double on_grid(double value, double size) {
+  if (!(size > 0)) return 0;
+  const double grid = std::pow(10.0, std::floor(std::log10(size)) - 10);
+  const double steps = std::round(value / grid);
+  return steps == 0 ? 0.0 : steps * grid;
+}
+
 double rounded(double value) {
   return std::stod(fmt::format("{:.3g}", value));
 }
@@ -23,19 +30,32 @@ Json groups_json(const std::map<std::string, model::GroupSummary>& groups) {
   Json result = Json::object();
   for (const auto& [name, g] : groups) {
     Json entry{{"count", g.count}};
-    if (g.kind == model::ElementKind::cable) {
+    using model::ElementKind;
+    if (model::is_cable_like(g.kind)) {
       entry["tension_min"] = g.tension_min;
       entry["tension_max"] = g.tension_max;
       entry["tension_mean"] = g.tension_mean;
       if (g.has_target) entry["tension_rms_from_target"] = g.tension_rms_from_target;
       entry["slack"] = g.slack;
-    } else if (g.kind == model::ElementKind::beam) {
+      if (g.kind == ElementKind::bar) {
+        entry["axial_min"] = g.axial_min;
+        entry["axial_max"] = g.axial_max;
+      }
+    } else if (g.kind == ElementKind::beam) {
       entry["axial_min"] = g.axial_min;
       entry["axial_max"] = g.axial_max;
       entry["moment_max"] = g.moment_max;
-    } else {
+    } else if (g.kind == ElementKind::membrane || g.kind == ElementKind::shell) {
       entry["principal_min"] = g.principal_min;
       entry["principal_max"] = g.principal_max;
+      if (g.kind == ElementKind::shell) entry["moment_max"] = g.moment_max;
+      if (g.kind == ElementKind::membrane && (g.wrinkled > 0 || g.slack > 0)) {
+        entry["wrinkled"] = g.wrinkled;
+        entry["slack"] = g.slack;
+      }
+    } else if (g.kind == ElementKind::spring) {
+      entry["force_max"] = g.force_max;
+      entry["moment_max"] = g.moment_max;
     }
     result[name] = entry;
   }
@@ -62,10 +82,14 @@ Json surface_json(const reflector::SurfaceError& e) {
 }
 
 Json model_json(const model::Model& model, int dofs) {
-  return {{"nodes", model.nodes.size()},         {"dofs", dofs},
-          {"cables", model.cables.size()},       {"beams", model.beams.size()},
-          {"membranes", model.membranes.size()}, {"shells", 0},
-          {"mass", model::total_mass(model)}};
+  Json entry{{"nodes", model.nodes.size()},         {"dofs", dofs},
+             {"cables", model.cables.size()},       {"beams", model.beams.size()},
+             {"membranes", model.membranes.size()}, {"shells", model.shells.size()}};
+  if (!model.springs.empty()) entry["springs"] = model.springs.size();
+  if (!model.masses.empty()) entry["masses"] = model.masses.size();
+  if (!model.links.empty()) entry["links"] = model.links.size();
+  entry["mass"] = model::total_mass(model);
+  return entry;
 }
 
 reflector::SurfaceSample surface_sample(Context& context) {
@@ -74,7 +98,8 @@ reflector::SurfaceSample surface_sample(Context& context) {
   sample.positions = model::positions(model, context.system().state());
   const auto cloth = model.select("cloth");
   sample.surface_nodes = cloth.nodes;
-  for (const int i : cloth.membranes) sample.triangles.push_back(model.membranes[i].nodes);
+  for (const int i : cloth.membranes)
+    for (const auto& triangle : model.membranes[i].nodes.triangles()) sample.triangles.push_back(triangle);
   sample.net_nodes = model.select("front_net_nodes").nodes;
   const double radius = context.deck.reflector->evaluation_radius;
   sample.radius = std::isnan(radius) ? 0 : radius;
@@ -105,19 +130,20 @@ Field deviation_field(Context& context) {
   return field;
 }
 
-/// Cell arrays run over cables, beams, membranes; entries that do not apply are zero.
+/// Cell arrays run over cables, beams, membranes, shells; entries that do not apply are zero.
 class CellArrays {
  public:
   CellArrays(const model::Model& model, const model::Response& response)
       : model_(model), response_(response) {}
 
   Field scalar(const std::string& name, double (*cable)(const model::CableResult&),
-               double (*beam)(const element::BeamForces&),
-               double (*membrane)(const model::MembraneResult&)) const {
+               double (*beam)(const element::BeamForces&), double (*membrane)(const model::MembraneResult&),
+               double (*shell)(const element::ShellForces&) = nullptr) const {
     Field field{name, 1, {}};
     for (const auto& r : response_.cables) field.values.push_back(cable ? cable(r) : 0);
     for (const auto& r : response_.beams) field.values.push_back(beam ? beam(r) : 0);
     for (const auto& r : response_.membranes) field.values.push_back(membrane ? membrane(r) : 0);
+    for (const auto& r : response_.shells) field.values.push_back(shell ? shell(r) : 0);
     return field;
   }
 
@@ -129,7 +155,8 @@ class CellArrays {
       const Vec3 v = pick(i);
       field.values.insert(field.values.end(), v.begin(), v.end());
     }
-    field.values.resize(field.values.size() + 3 * response_.membranes.size(), 0.0);
+    field.values.resize(field.values.size() + 3 * (response_.membranes.size() + response_.shells.size()),
+                        0.0);
     return field;
   }
 
@@ -138,6 +165,7 @@ class CellArrays {
     for (const auto& e : model_.cables) field.values.push_back(e.group);
     for (const auto& e : model_.beams) field.values.push_back(e.group);
     for (const auto& e : model_.membranes) field.values.push_back(e.group);
+    for (const auto& e : model_.shells) field.values.push_back(e.group);
     return field;
   }
 
@@ -155,11 +183,12 @@ output::FieldGrid field_grid(Context& context, const model::Response& response) 
   grid.points = model.nodes;
   for (const auto& cable : model.cables) grid.lines.push_back(cable.nodes);
   for (const auto& beam : model.beams) grid.lines.push_back(beam.nodes);
-  for (const auto& membrane : model.membranes) grid.triangles.push_back(membrane.nodes);
+  for (const auto& membrane : model.membranes) grid.facets.push_back(membrane.nodes);
+  for (const auto& shell : model.shells) grid.facets.push_back(shell.nodes);
   grid.point_fields.push_back(displacement_field(state));
   if (context.surface) grid.point_fields.push_back(deviation_field(context));
   const CellArrays arrays(model, response);
-  using model::CableResult, model::MembraneResult, element::BeamForces;
+  using model::CableResult, model::MembraneResult, element::BeamForces, element::ShellForces;
   auto& out = grid.cell_fields;
   out.push_back(arrays.group());
   out.push_back(arrays.scalar(
@@ -179,10 +208,26 @@ output::FieldGrid field_grid(Context& context, const model::Response& response) 
   for (int axis = 0; axis < 3; ++axis)
     out.push_back(arrays.beam_vector(fmt::format("beam axis {}", axis + 1),
                                      [&](std::size_t i) { return Vec3(response.beam_frames[i].col(axis)); }));
-  out.push_back(arrays.scalar("principal resultant 1 [N/m]", nullptr, nullptr,
-                              [](const MembraneResult& r) { return r.principal_cauchy[0]; }));
-  out.push_back(arrays.scalar("principal resultant 2 [N/m]", nullptr, nullptr,
-                              [](const MembraneResult& r) { return r.principal_cauchy[1]; }));
+  out.push_back(arrays.scalar(
+      "principal resultant 1 [N/m]", nullptr, nullptr,
+      [](const MembraneResult& r) { return r.principal_cauchy[0]; },
+      [](const ShellForces& f) { return model::principal_values(f.membrane)[0]; }));
+  out.push_back(arrays.scalar(
+      "principal resultant 2 [N/m]", nullptr, nullptr,
+      [](const MembraneResult& r) { return r.principal_cauchy[1]; },
+      [](const ShellForces& f) { return model::principal_values(f.membrane)[1]; }));
+  if (std::any_of(model.groups.begin(), model.groups.end(),
+                  [](const model::Group& g) { return g.membrane.wrinkling; }))
+    out.push_back(arrays.scalar("wrinkled (1) or slack (2)", nullptr, nullptr,
+                                [](const MembraneResult& r) { return static_cast<double>(r.state); }));
+  if (!model.shells.empty()) {
+    out.push_back(arrays.scalar("principal moment 1 [N]", nullptr, nullptr, nullptr,
+                                [](const ShellForces& f) { return model::principal_values(f.moment)[0]; }));
+    out.push_back(arrays.scalar("principal moment 2 [N]", nullptr, nullptr, nullptr,
+                                [](const ShellForces& f) { return model::principal_values(f.moment)[1]; }));
+    out.push_back(arrays.scalar("transverse shear [N/m]", nullptr, nullptr, nullptr,
+                                [](const ShellForces& f) { return f.shear.norm(); }));
+  }
   return grid;
 }
 

@@ -18,6 +18,8 @@ double above_rounding(double value, double floor);
 
 /// A figure of which only the size matters, to three digits.
 double rounded(double value);
+/// Value to ten digits of `size`: what lies below is rounding.
+double on_grid(double value, double size);
 
 Json groups_json(const std::map<std::string, model::GroupSummary>& groups);
 Json surface_json(const reflector::SurfaceError& error);
@@ -32,5 +34,12 @@ output::FieldGrid field_grid(Context& context, const model::Response& response);
 
 /// Pictures of a state: deviation of the cloth, tensions of the nets.
 void draw_state(Context& context, const model::Response& response);
+
+/// Facets of membranes or shells as triangles of a layer.
+template <class Facets>
+void add_triangles(const Facets& facets, output::ViewLayer& layer) {
+  for (const auto& facet : facets)
+    for (const auto& triangle : facet.nodes.triangles()) layer.triangles.push_back(triangle);
+}
 
 }  // namespace tautline::steps

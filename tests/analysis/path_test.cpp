@@ -128,11 +128,12 @@ TEST(Path, ReportsTheLambdaItAimsAt) {
   auto problem = hardening();
   auto work = workspace();
   int calls = 0;
-  follow_path(problem, work, {}, [&](double aim, int iteration, double residual) {
+  const auto tell = [&](double aim, int iteration, double residual) {
     EXPECT_EQ(aim, 1);
     EXPECT_EQ(iteration, calls++);
     EXPECT_GE(residual, 0);
-  });
+  };
+  follow_path(problem, work, {}, {tell, {}});
   EXPECT_GT(calls, 2);
 }
 
@@ -177,7 +178,7 @@ TEST(Path, IsAtItsLastConvergedPointAfterAnError) {
       [](const VecX& x) -> MatX { return MatX((1 + 3 * x.array().square()).matrix().asDiagonal()); });
   auto work = workspace();
   EXPECT_THROW(follow_path(problem, work, few_iterations(),
-                           [&](double aim, int, double) { armed = armed || aim <= 0.5; }),
+                           {[&](double aim, int, double) { armed = armed || aim <= 0.5; }, {}}),
                std::runtime_error);
   EXPECT_EQ(problem.lambda, 0.5);
   EXPECT_EQ(problem.point, problem.committed);

@@ -14,11 +14,24 @@ constexpr std::array<bool, 6> pinned{true, true, true, false, false, false};
 constexpr std::array<bool, 6> clamped{true, true, true, true, true, true};
 
 inline model::Support support(const std::vector<int>& nodes, const std::array<bool, 6>& fixed = pinned) {
-  return {"", {}, nodes, fixed};
+  model::Support result;
+  result.nodes = nodes;
+  result.fixed = fixed;
+  return result;
 }
 
-inline model::NodalLoad load(int node, const Vec3& force, const Vec3& moment = Vec3::Zero()) {
-  return {"", {node}, force, moment};
+inline model::Load load(int node, const Vec3& force, const Vec3& moment = Vec3::Zero()) {
+  model::Load result;
+  result.nodes = {node};
+  result.force = force;
+  result.moment = moment;
+  return result;
+}
+
+inline model::Load weight(const Vec3& acceleration) {
+  model::Load result;
+  result.acceleration = acceleration;
+  return result;
 }
 
 /// Follows the stage to `boundary` from the present state to its end.
@@ -73,8 +86,8 @@ inline model::Model cantilever(int elements, double length, const element::BeamS
   return model;
 }
 
-inline Boundary clamped_root(const model::NodalLoad& load) {
-  return {{support({0}, clamped)}, {load}, Vec3::Zero()};
+inline Boundary clamped_root(const model::Load& load) {
+  return {{support({0}, clamped)}, {load}};
 }
 
 }  // namespace tautline::assembly::testing_models

@@ -35,7 +35,7 @@ TEST(Deck, ReadsSectionsAndGroupsOfTheMainDeck) {
   EXPECT_EQ(deck.groups.size(), 8U);
   EXPECT_EQ(deck.groups.at("diagonals").tension, 29);
   EXPECT_FALSE(deck.groups.at("ties").tension);
-  EXPECT_EQ(deck.groups.at("cloth").prestress, 2);
+  EXPECT_EQ(deck.groups.at("cloth").prestress, (std::array<double, 2>{2, 2}));
   EXPECT_GT(deck.groups.at("cloth").where.line, 0);
 }
 

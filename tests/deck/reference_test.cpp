@@ -69,7 +69,7 @@ TEST(Schema, IsJsonWithEveryTopLevelKey) {
 TEST(Schema, ChoosesByKind) {
   const auto json = nlohmann::json::parse(schema());
   const auto& sections = json["properties"]["sections"]["additionalProperties"]["oneOf"];
-  ASSERT_EQ(sections.size(), 6U);
+  ASSERT_EQ(sections.size(), 16U);
   EXPECT_EQ(sections[0]["properties"]["kind"]["const"], "cable");
   const auto& steps = json["properties"]["steps"]["items"]["oneOf"];
   EXPECT_EQ(steps.size(), 5U);

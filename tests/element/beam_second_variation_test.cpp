@@ -38,6 +38,19 @@ TEST(BeamSecondVariation, IsTheQuadraticFormOfTheTangent) {
               1e-12 * response.tangent.norm() * 12);
 }
 
+TEST(BeamSecondVariation, OfAHeatedBeamIsTheQuadraticFormOfItsTangent) {
+  BeamGeometry g = geometry();
+  g.free_strain = 6e-4;
+  const auto response = evaluate_beam(stiff(), g, bent(), Want::tangent);
+  Vec<12> v;
+  for (int i = 0; i < 12; ++i) v[i] = std::cos(0.3 + 1.7 * i);
+  EXPECT_NEAR(beam_second_variation(stiff(), g, bent(), v), v.dot(response.tangent * v),
+              1e-12 * response.tangent.norm() * 12);
+  // and the free strain matters: the axial force of -54 kN acts on the turning chord
+  EXPECT_GT(std::abs(beam_second_variation(stiff(), geometry(), bent(), v) - v.dot(response.tangent * v)),
+            1e3);
+}
+
 // A rigid motion of an unstressed beam stores nothing. K has entries of 1e9 N/m, whose rounding leaves 1e-7
 // J; from relative motions only the moments are left that the frame's rounding makes, 4 E I / L * 2e-16 =
 // 2e-10 N m.

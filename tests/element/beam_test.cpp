@@ -89,6 +89,43 @@ TEST(BeamLinear, ShortStiffBeamKeepsTheDigitsOfItsAxialForce) {
   EXPECT_NEAR(response.forces.axial, EA * elongation / length, 1e-12);
 }
 
+// --- free strain
+// --------------------------------------------------------------------------------------------
+
+TEST(BeamFreeStrain, MakesTheThermalForceOfAHeldBar) {
+  // steel, alpha = 12e-6/K, dT = 50 K: N = -EA alpha dT, W = EA L (alpha dT)^2/2; the cold stiffness EA/L
+  // remains
+  const double EA = 2e8, free_strain = 12e-6 * 50;
+  BeamGeometry geometry;
+  geometry.x_ref << 1, 3, 2, 2, 0, 0;
+  geometry.frame = beam_frame(geometry.x_ref, Vec3(0, 0, 1));
+  geometry.free_strain = free_strain;
+  const auto held = evaluate_beam({EA, 30, 20, 10, 0, 0, 0, 0, 0}, geometry, {}, Want::tangent);
+  EXPECT_NEAR(held.forces.axial, -120000, 1e-9);
+  EXPECT_NEAR(held.force[6], -120000, 1e-9);
+  EXPECT_NEAR(held.force[0], 120000, 1e-9);
+  EXPECT_NEAR(held.energy, EA * 2 * free_strain * free_strain / 2, 1e-12);
+  EXPECT_NEAR(held.tangent(6, 6), EA / 2, 1e-6);
+}
+
+TEST(BeamFreeStrain, ExpandsFreelyWithoutStress) {
+  // both signs, in any position: u2 - u1 = L free_strain along the turned axis
+  const Vec3 d0(1, 2, 2);
+  for (const double free_strain : {6e-4, -3e-3, 0.1}) {
+    BeamGeometry geometry;
+    geometry.x_ref << Vec3(5, -2, 1), Vec3(5, -2, 1) + d0;
+    geometry.frame = beam_frame(geometry.x_ref, Vec3(0, 0, 1));
+    geometry.free_strain = free_strain;
+    const Mat3 Q = Eigen::AngleAxisd(1.2, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    BeamMotion motion;
+    motion.u << Vec3(0.1, 0.2, 0.3), Vec3(0.1, 0.2, 0.3) + (1 + free_strain) * Q * d0 - d0;
+    motion.rotation = {Q, Q};
+    const auto loose = evaluate_beam({1e6, 30, 20, 10, 400, 300, 0, 0, 0}, geometry, motion, Want::force);
+    EXPECT_LT(loose.force.norm(), 1e6 * 2e-15);  // rounding of displacements of some 1 m
+    EXPECT_LT(loose.energy, 1e-20);
+  }
+}
+
 // --- large displacements
 // --------------------------------------------------------------------------------------------
 

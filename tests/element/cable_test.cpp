@@ -111,8 +111,53 @@ TEST(Cable, SlackForceDoesNotDependOnTheUnstressedLength) {
   EXPECT_EQ(cable_force_by_unstressed_length({1000, -0.1}, along_x, Vec<6>::Zero()), Vec<6>::Zero());
 }
 
+TEST(Cable, BarPushesWhereACableIsSlack) {
+  // Shortened from 4 m to 3 m with L0 = 5 m: eps = -0.4. Material stiffness EA/L0 along, T/l across.
+  const CableProperties bar{100, -0.2, true};
+  const auto pushed = evaluate_cable(bar, along_x, ends(Vec3::Zero(), Vec3(-1, 0, 0)), Want::tangent);
+  EXPECT_NEAR(pushed.tension, -40, 1e-13);
+  EXPECT_NEAR(pushed.energy, 100 * 5 * 0.16 / 2, 1e-12);
+  EXPECT_FALSE(pushed.slack);
+  EXPECT_LT((pushed.force - ends(Vec3(40, 0, 0), Vec3(-40, 0, 0))).norm(), 1e-13);
+  EXPECT_NEAR(pushed.tangent(3, 3), 20, 1e-14);
+  EXPECT_NEAR(pushed.tangent(4, 4), -40. / 3, 1e-13);
+}
+
+TEST(Cable, BarIsStiffAtItsUnstressedLength) {
+  const auto bar = evaluate_cable({1000, 0, true}, along_x, Vec<6>::Zero(), Want::tangent);
+  EXPECT_EQ(bar.tension, 0);
+  EXPECT_FALSE(bar.slack);
+  EXPECT_DOUBLE_EQ(bar.tangent(3, 3), 250);
+  EXPECT_EQ(bar.tangent(4, 4), 0);
+}
+
+TEST(Cable, FlatTwoBarTrussMeetsTheSnapThroughForce) {
+  // Two bars over a half span a, apex lowered by w from the height h. Both signs of w pass the flat position,
+  // where the force vanishes by symmetry: P = 2 EA (L0 - l)/L0 (h - w)/l.
+  const double a = 10, h = 1, EA = 1e4, L0 = std::hypot(a, h);
+  for (const double w : {0.4, 0.9, 1., 1.5, 2., 2.3}) {
+    const Vec<6> u = ends(Vec3::Zero(), Vec3(0, 0, -w));
+    const auto left = evaluate_cable({EA, 0, true}, between(Vec3(-a, 0, 0), Vec3(0, 0, h)), u, Want::force);
+    const auto right = evaluate_cable({EA, 0, true}, between(Vec3(a, 0, 0), Vec3(0, 0, h)), u, Want::force);
+    const double l = std::hypot(a, h - w);
+    EXPECT_NEAR(-left.force[5] - right.force[5], 2 * EA * (L0 - l) / L0 * (h - w) / l, 1e-11) << w;
+  }
+}
+
+TEST(Cable, BarForceByUnstressedLengthHoldsInCompression) {
+  // T = EA (l/L0 - 1): dT/dL0 = -EA l/L0^2 on either side of slackness
+  const Vec<6> derivative =
+      cable_force_by_unstressed_length({1000, -0.2, true}, along_x, ends(Vec3::Zero(), Vec3(-1, 0, 0)));
+  EXPECT_NEAR(derivative[3], -1000 * 3. / 25, 1e-12);
+}
+
+TEST(Cable, MassIsThatOfTheUnstressedLength) {
+  // the sum over all entries of one direction: the whole mass
+  EXPECT_NEAR(cable_mass(0.5, 3)(Eigen::seqN(0, 2, 3), Eigen::seqN(0, 2, 3)).sum(), 1.5, 1e-15);
+}
+
 TEST(Cable, MassGivesTheKineticEnergyOfRigidMotion) {
-  const Mat<6> mass = cable_mass(0.5, along_x);  // 2 kg, 4 m
+  const Mat<6> mass = cable_mass(0.5, 4);  // 2 kg
   const Vec<6> translation = ends(Vec3(1, 2, 2), Vec3(1, 2, 2));
   EXPECT_NEAR(translation.dot(mass * translation) / 2, 2. * 9 / 2, 1e-13);
   const Vec<6> spin = ends(Vec3(0, -2, 0), Vec3(0, 2, 0));  // 1 rad/s about the middle: m L^2 / 12 / 2

@@ -90,18 +90,16 @@ TEST(ImportedMesh, IsTheSameWhenReadAgain) {
 
 constexpr auto one_surface = "$PhysicalNames\n1\n2 7 \"cloth\"\n$EndPhysicalNames\n";
 
-TEST(ImportedMesh, SplitsQuadrilateralsAlongTheShorterDiagonal) {
+TEST(ImportedMesh, KeepsQuadrilateralsInTheirOrder) {
   const TemporaryFile file(
       msh2(one_surface, "4\n1 0 0 0\n2 2 0 0\n3 3 1 0\n4 1 1 0\n", "1\n1 3 2 7 1 1 2 3 4\n"));
   const auto mesh = import_gmsh(file.path());
-  const auto& triangles = mesh.groups.at("cloth").triangles;
-  ASSERT_EQ(triangles.size(), 2u);  // diagonals: 1-3 of length sqrt(10), 2-4 of length sqrt(2)
-  for (const auto& t : triangles) {
-    EXPECT_EQ(std::count(t.begin(), t.end(), 1) + std::count(t.begin(), t.end(), 3), 2);
-    const auto& x = mesh.nodes;
-    EXPECT_GT((x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).z(), 0)
-        << "the sense of the quadrilateral is kept";
-  }
+  const auto& cloth = mesh.groups.at("cloth");
+  EXPECT_TRUE(cloth.triangles.empty());
+  ASSERT_EQ(cloth.quadrilaterals.size(), 1u);
+  const Points corners{{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {1, 1, 0}};
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(mesh.nodes[static_cast<std::size_t>(cloth.quadrilaterals[0][i])], corners[i]);
 }
 
 TEST(ImportedMesh, DropsNodesThatNoNamedGroupUses) {

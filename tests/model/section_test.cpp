@@ -185,7 +185,7 @@ TEST(InitialState, OfOneGroupLeavesTheOthersAlone) {
 TEST(InitialState, OfAMembraneIsThePrestressInEveryDirection) {
   auto model = two_facets();
   GroupOptions options;
-  options.prestress = 250;
+  options.prestress = {250, 250};
   set_initial_state(model, model.find_group("cloth"), options);
   for (const auto& membrane : model.membranes) EXPECT_EQ(membrane.prestress, Vec3(250, 250, 0));
 }

@@ -25,7 +25,7 @@ FieldGrid square() {
   FieldGrid grid;
   grid.points = {{0, 0, 0}, {1.0 / 3, 0, 0}, {1, 1, 0}, {0, 1, 0.5}};
   grid.lines = {{0, 1}, {3, 0}};
-  grid.triangles = {{0, 1, 2}, {0, 2, 3}};
+  grid.facets = {{0, 1, 2}, {0, 2, 3}};
   grid.point_fields = {{"displacement [m]", 3, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}}};
   grid.cell_fields = {{"tension [N]", 1, {10.5, 20.5, 0, 0}},
                       {"<principal> & \"stress\"", 2, {0, 0, 0, 0, 1, 2, 3, 4}}};
@@ -64,7 +64,7 @@ TEST(Fields, PieceHoldsTheOwnersCellsAndOnlyTheirPoints) {
   const auto piece = extract_piece(square(), {0, 1, 0, 1}, 1);
   ASSERT_EQ(piece.points.size(), 3u);
   EXPECT_EQ(piece.lines, (std::vector<std::array<int, 2>>{{0, 1}}));
-  EXPECT_EQ(piece.triangles, (std::vector<std::array<int, 3>>{{1, 2, 0}}));
+  EXPECT_EQ(piece.facets, (std::vector<model::FacetNodes>{{1, 2, 0}}));
   EXPECT_EQ(piece.points[0], Vec3(0, 1, 0.5));
   EXPECT_EQ(piece.point_fields[0].values, (std::vector<double>{9, 10, 11, 0, 1, 2, 6, 7, 8}));
   EXPECT_EQ(piece.cell_fields[0].values, (std::vector<double>{20.5, 0}));

@@ -62,19 +62,21 @@ std::vector<double> last_numbers(const std::string& row, std::size_t n) {
 TEST(Tables, NodesKeepAllDigitsAndTheirGroup) {
   const TemporaryDirectory directory("tables_nodes");
   const auto model = small_model();
-  model::State state{Points(5, Vec3(1e-3 / 7, 0, -1e-17)), std::vector<Mat3>(5, Mat3::Identity())};
+  model::State state{Points(5, Vec3(1e-3 / 7, 0, -1e-17)), std::vector<Mat3>(5, Mat3::Identity()), {}};
+  state.rotation[2] = Eigen::AngleAxisd(0.25, Vec3::UnitZ()).toRotationMatrix();
   write_nodes(directory.file("nodes.csv"), model, state);
   const auto rows = lines_of(directory.file("nodes.csv"));
   ASSERT_EQ(rows.size(), 6u);
-  EXPECT_EQ(rows[0], "id,group,x_ref,y_ref,z_ref,x,y,z,ux,uy,uz");
+  EXPECT_EQ(rows[0], "id,group,x_ref,y_ref,z_ref,x,y,z,ux,uy,uz,rx,ry,rz");
   EXPECT_EQ(rows[2].substr(0, 6), "2,net,");
   EXPECT_EQ(rows[4].substr(0, 7), "4,apex,");
   EXPECT_EQ(rows[5].substr(0, 8), "5,frame,");
-  const auto numbers = last_numbers(rows[2], 9);
+  const auto numbers = last_numbers(rows[2], 12);
   EXPECT_EQ(numbers[0], 1.0 / 3);
   EXPECT_EQ(numbers[3], 1.0 / 3 + 1e-3 / 7);
   EXPECT_EQ(numbers[6], 1e-3 / 7);
   EXPECT_EQ(numbers[8], -1e-17);
+  EXPECT_DOUBLE_EQ(last_numbers(rows[3], 3)[2], 0.25) << "rotation vector";
 }
 
 TEST(Tables, FormFindingNodesComeBackBitForBit) {

@@ -52,7 +52,7 @@ SurfaceSample subdivided(const Points& nodes, const model::Model& model, int n) 
     return place->second;
   };
   for (const auto& membrane : model.membranes) {
-    const auto& [a, b, c] = membrane.nodes;
+    const int a = membrane.nodes[0], b = membrane.nodes[1], c = membrane.nodes[2];
     const auto at = [&](int i, int j) {
       return add((nodes[a] * (n - i - j) + nodes[b] * i + nodes[c] * j) / n);
     };

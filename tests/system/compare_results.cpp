@@ -76,7 +76,26 @@ class Comparison {
       if (!a.contains(key)) others_.push_back(fmt::format("{}/{} is missing in the first file", path, key));
   }
 
+  /// Components of a vector in space, which are compared beside the whole vector's length.
+  static bool is_vector(const Json& list, const std::string& path) {
+    static const std::set<std::string> names{"force", "moment", "displacement", "rotation", "applied_force"};
+    return list.size() == 3 && list[0].is_number() && names.count(path.substr(path.rfind('/') + 1)) > 0;
+  }
+
+  void compare_vectors(const Json& a, const Json& b, const std::string& path) {
+    const auto length = [](const Json& v) {
+      return std::hypot(v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
+    };
+    const double size = std::max(length(a), length(b));
+    for (std::size_t i = 0; i < 3; ++i) {
+      ++n_numbers_;
+      const double x = a[i].get<double>(), y = b[i].get<double>();
+      if (x != y) numbers_.push_back({fmt::format("{}/{}", path, i), x, y, std::abs(x - y) / size});
+    }
+  }
+
   void compare_arrays(const Json& a, const Json& b, const std::string& path) {
+    if (is_vector(a, path) && is_vector(b, path)) return compare_vectors(a, b, path);
     if (a.size() != b.size())
       others_.push_back(fmt::format("{} has {} entries and {} entries", path, a.size(), b.size()));
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)

@@ -19,6 +19,9 @@ struct ResidualNorms {
   double force = 0, moment = 0;  ///< out-of-balance [N], [N m]
   double reference_force = 0,
          reference_moment = 0;  ///< what they are compared with: the sum of |element forces| node by node
+  double rounding_force = 0,
+         rounding_moment =
+             0;  ///< what the rounding of the stiffest element may leave [N], [N m]; 0: not known
 };
 
 /// What Newton solves: gradient(x) = 0. The unknowns are increments from the point where the solve began;

@@ -15,6 +15,9 @@ namespace tautline::analysis {
 class PathProblem : public NonlinearProblem {
  public:
   virtual void set_lambda(double lambda) = 0;
+  /// Moves the present point towards the equilibrium at the lambda just set, as far as a tangent can tell;
+  /// false if the tangent is singular. A problem whose unknowns themselves are prescribed needs it.
+  virtual bool predict(Workspace&) { return true; }
   virtual void commit() = 0;     ///< keeps the present point
   virtual void roll_back() = 0;  ///< returns to the point kept last
 };
@@ -35,8 +38,11 @@ struct PathSummary {
   double lambda() const { return points.empty() ? 0 : points.back().lambda; }
 };
 
-/// Called with (lambda aimed at, iteration, relative residual).
-using PathCallback = std::function<void(double, int, double)>;
+/// What is told on the way.
+struct PathCallback {
+  std::function<void(double, int, double)> iteration;  ///< (lambda aimed at, iteration, relative residual)
+  std::function<void(double)> converged;               ///< (lambda), the problem stands at the point
+};
 
 /// @brief Follows the path to lambda = 1 or as far as it goes; the problem is left at the last converged
 /// point. Collective.

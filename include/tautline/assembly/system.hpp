@@ -10,6 +10,8 @@
 
 #include <tautline/analysis/path.hpp>
 #include <tautline/assembly/dof_map.hpp>
+#include <tautline/assembly/kinematics.hpp>
+#include <tautline/assembly/mass_options.hpp>
 #include <tautline/la/symmetric_matrix.hpp>
 #include <tautline/model/model.hpp>
 #include <tautline/model/state.hpp>
@@ -19,8 +21,7 @@ namespace tautline::assembly {
 /// What is held and what acts at one end of a stage.
 struct Boundary {
   std::vector<model::Support> supports;
-  std::vector<model::NodalLoad> loads;
-  Vec3 acceleration = Vec3::Zero();  ///< [m/s^2]
+  std::vector<model::Load> loads;
 };
 
 /// Size of what the supports carried and do no longer: the start of a stage.
@@ -30,19 +31,43 @@ struct OutOfBalance {
   int node = -1;      ///< where the largest force is
 };
 
+/// What acts on the model at one end of a stage, node by node, facet by facet, group by group.
+struct Acting {
+  Points force, moment;              ///< dead nodal loads, of all kinds together [N], [N m]
+  std::vector<double> pressure;      ///< on membranes, then shells [Pa]
+  std::vector<double> temperature;   ///< change of each group [K]
+  std::vector<double> strain;        ///< initial strain of each cable
+  Vec3 acceleration = Vec3::Zero();  ///< [m/s^2]
+
+  /// (1 - t) x this + t x other.
+  Acting blended(const Acting& other, double t) const;
+};
+
+/// A support that moves: unknowns and how far they go in the stage.
+struct Drive {
+  int block = -1;
+  Vec3 way = Vec3::Zero();  ///< in the block's unknowns; zero where it is free [m] or [rad]
+};
+
 /// @brief A finite-element model in motion: model, state, boundary.
 ///
 /// The model is held whole on every rank; elements, unknowns and factors are dealt out. A stage begins with
-/// `begin_stage`: forces that are out of balance there (reactions of released supports, loads not yet
-/// balanced, prestress) are kept as external forces and ramped out as lambda goes from 0 to 1; unstressed
-/// lengths asked for by `set_target_strains` are ramped in.
+/// `begin_stage`: what acts goes from what it was to what the boundary says as lambda goes from 0 to 1;
+/// forces that are out of balance at its start (reactions of released supports, prestress) are kept as
+/// external forces and ramped out; supports that move go their way; unstressed lengths asked for by
+/// `set_target_strains` are ramped in.
 class System : public analysis::PathProblem {
  public:
   explicit System(model::Model model);
+  System(const System&) = delete;
+  System& operator=(const System&) = delete;
 
   const model::Model& model() const noexcept { return model_; }
   const model::State& state() const noexcept { return state_; }
   const DofMap& dof_map() const noexcept { return map_; }
+  const Kinematics& kinematics() const noexcept { return kinematics_; }
+  /// Diagonal of the box around the reference nodes [m].
+  double size() const noexcept { return size_; }
   int n_dofs() const noexcept { return 3 * map_.layout.total; }
   double assembly_seconds() const noexcept { return assembly_seconds_; }
 
@@ -50,9 +75,12 @@ class System : public analysis::PathProblem {
   /// of `strains`.
   void set_state(const model::State& state);
   void set_state(const model::State& state, const std::vector<double>& strains);
+  /// Back to the reference configuration with nothing acting; unstressed lengths stay.
+  void reset();
   /// Present initial strain of each cable.
   std::vector<double> strains() const;
   /// Starts a stage towards `boundary` from the present state. @return what is out of balance there
+  /// @throws ModelError for a moving support that holds nothing
   OutOfBalance begin_stage(const Boundary& boundary);
   /// New initial strains, one for each cable, reached at lambda = 1 of the stage begun next by begin_stage.
   void set_target_strains(std::vector<double> strains);
@@ -66,22 +94,28 @@ class System : public analysis::PathProblem {
   analysis::ResidualNorms norms(const la::Vector& f) const override;
   double relative_size(const la::Vector& increment) const override;
   void set_lambda(double lambda) override;
+  bool predict(analysis::Workspace& workspace) override;
   void commit() override;
   void roll_back() override;
 
   /// Mass matrix of the free unknowns in the present state; rows and columns of held ones are zero.
-  la::SymmetricMatrix mass() const { return assemble_mass(held_); }
+  la::SymmetricMatrix mass(MassKind kind = MassKind::consistent) const;
   la::SymmetricMatrix new_matrix() const { return {map_.layout, map_.pattern}; }
   /// x^T K x in the present state, summed element by element from relative motions so that it keeps its
   /// digits where a stiff frame moves almost rigidly. Collective.
   double second_variation(const la::Vector& x) const;
   /// Whether an unknown is held: index 3 * block + component.
-  const std::vector<bool>& held() const noexcept { return held_; }
-  /// Reactions: internal minus external force at every node, zero where nothing is held [N], [N m].
-  struct Reactions {
+  const std::vector<bool>& held() const noexcept { return kinematics_.held(); }
+  /// Forces and moments in the global frame, one for each node [N], [N m].
+  struct NodalForces {
     Points force, moment;
   };
-  Reactions reactions();
+  /// Of the supports: internal minus external force, zero where nothing is held. Collective.
+  NodalForces reactions() const;
+  /// Of the ground on the structure through grounded springs.
+  NodalForces ground_springs() const;
+  /// Of everything that acts in the present state: dead loads, pressure, weight. Collective.
+  NodalForces applied() const;
   /// A vector's blocks as nodal values: displacement part and rotation part. Collective.
   struct NodalField {
     Points displacement, rotation;
@@ -90,33 +124,46 @@ class System : public analysis::PathProblem {
 
  private:
   struct Share {
-    std::vector<int> cables, beams, membranes;  ///< those that touch a node of this rank
+    std::vector<int> cables, beams, membranes, shells, springs,
+        masses;  ///< those that touch a block of this rank
   };
-  /// Internal forces of the elements that touch this rank's nodes added into `force`, and the sums of their
-  /// magnitudes into `magnitude`; complete in the rank's own entries. Elements come in the model's order, so
-  /// that every entry is the same number however the nodes are dealt out.
-  void add_internal(const model::State& state, std::vector<double>& force,
-                    std::vector<double>& magnitude) const;
-  model::State moved(const std::vector<double>& x) const;
-  std::vector<double> dead_loads(const Boundary& boundary) const;
-  std::vector<double> internal_forces() const;
+  /// Calls `visit(element)` for every element of this rank's share, in the model's order.
+  template <class Visit>
+  void for_each_own(const Visit& visit) const;
+  /// Calls `visit(nodes, pressure)` for every facet of this rank's share under pressure.
+  template <class Visit>
+  void for_each_pressed(const Visit& visit) const;
+  /// Residual without the ramped out-of-balance at `state`: internal minus external forces, complete in this
+  /// rank's own entries; the sums of their magnitudes into `magnitude`. Elements come in the model's order,
+  /// so that every entry is the same number however the nodes are dealt out.
+  void add_forces(const model::State& state, const Kinematics& at, std::vector<double>& force,
+                  std::vector<double>& magnitude) const;
+  std::vector<double> out_of_balance() const;
+  Acting acting(const Boundary& boundary) const;
+  void add_element_loads(const model::Load& load, Acting& to) const;
+  void find_drives(const Boundary& boundary);
+  /// K dx for an increment of all unknowns; complete in this rank's own entries.
+  std::vector<double> stiffness_times(const std::vector<double>& increment) const;
   std::span<const double> own_part(const std::vector<double>& all) const;
-  la::SymmetricMatrix assemble_mass(const std::vector<bool>& without) const;
-  void hold(const std::vector<model::Support>& supports);
-  void apply_strains();
+  std::vector<double> gathered(const std::vector<double>& own_complete) const;
+  void apply(double lambda);
+  void find_rounding();
 
   model::Model model_;
   DofMap map_;
+  Kinematics kinematics_;  // linearised about state_
   Share share_;
   model::State state_, committed_;
   std::vector<double> origin_;  // unknowns at which `state_` was accepted
-  std::vector<bool> held_;
-  std::vector<double> start_force_, end_force_;  // external forces at lambda = 0 and 1
-  std::vector<double> start_strain_, end_strain_;
+  Acting start_, end_, now_;
+  std::vector<double> start_residual_;  // of all unknowns, ramped out
+  std::vector<Drive> drives_;
+  std::vector<Vec3> turned_;  // rotation vectors of driven nodes so far [rad], by node
   std::optional<std::vector<double>> wanted_strain_;
-  double lambda_ = 1, size_ = 1;
+  double lambda_ = 1, driven_to_ = 0, committed_drive_ = 0, size_ = 1;
   double support_stiffness_ = 1;
-  mutable std::vector<double> magnitude_;  // of the last residual, all unknowns
+  double rounding_force_ = 0, rounding_moment_ = 0;  // of the stiffest elements
+  mutable std::vector<double> magnitude_;            // of the last residual, all unknowns
   mutable double assembly_seconds_ = 0;
 };
 

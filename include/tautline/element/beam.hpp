@@ -26,6 +26,7 @@ struct BeamSection {
 struct BeamGeometry {
   Mat<3, 2> x_ref;  ///< end coordinates, column = node [m]
   Mat3 frame;       ///< columns: local axes 1, 2, 3 in the reference configuration, right-handed, orthonormal
+  double free_strain = 0;  ///< axial strain without force, e.g. thermal [-]
 };
 
 /// Motion of the two ends: displacements and rotations from the reference configuration.

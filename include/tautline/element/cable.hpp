@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// Two-node tension-only cable of finite displacement. Theory: docs/theory/cable.md
+/// Two-node tension-only cable, or bar, of finite displacement. Theory: docs/theory/cable.md
 
 #include <tautline/core/types.hpp>
 #include <tautline/element/want.hpp>
@@ -13,6 +13,7 @@ struct CableProperties {
   /// Engineering strain in the reference configuration, l_ref / L0 - 1 with unstressed length L0 [-].
   /// Negative where the cable starts slack.
   double initial_strain = 0;
+  bool carries_compression = false;  ///< a bar: sigma = E eps for both signs
 };
 
 /// Answer of the cable; everything from the one energy W = EA L0 <eps>^2 / 2, eps = l/L0 - 1, <.> the
@@ -21,14 +22,15 @@ struct CableResponse {
   double energy = 0;   ///< [J]
   Vec<6> force;        ///< dW/du, order (u1x,u1y,u1z,u2x,...) [N]
   Mat<6> tangent;      ///< d force / du [N/m]; left untouched unless wanted
-  double tension = 0;  ///< EA <eps> [N], never negative
-  bool slack = false;  ///< eps <= 0
+  double tension = 0;  ///< EA <eps> [N]; negative only in a bar
+  bool slack = false;  ///< eps <= 0; never in a bar
 };
 
 /// @brief Energy, internal force, tangent and tension of a cable.
 ///
-/// Engineering strain, bilinear law sigma = E eps for eps > 0, else 0 (Belov, eq. 3.10). The elongation is
-/// formed from displacement differences, so that the tension of a short stiff tie keeps its digits.
+/// Engineering strain, bilinear law sigma = E eps for eps > 0, else 0 (Belov, eq. 3.10); a bar carries both
+/// signs. The elongation is formed from displacement differences, so that the tension of a short stiff tie
+/// keeps its digits.
 /// @param[in] x_ref  reference coordinates, shape (3, 2), column = node [m]; distinct points
 /// @param[in] u      displacements, shape (6) [m]
 CableResponse evaluate_cable(const CableProperties& properties, const Mat<3, 2>& x_ref, const Vec<6>& u,
@@ -38,7 +40,7 @@ CableResponse evaluate_cable(const CableProperties& properties, const Mat<3, 2>&
 Vec<6> cable_force_by_unstressed_length(const CableProperties& properties, const Mat<3, 2>& x_ref,
                                         const Vec<6>& u);
 
-/// Consistent mass matrix [kg] of a cable with `mass_per_length` (per unit of reference length) [kg/m].
-Mat<6> cable_mass(double mass_per_length, const Mat<3, 2>& x_ref);
+/// Consistent mass matrix [kg] of a cable of `unstressed_length` [m] and `mass_per_length` of that [kg/m].
+Mat<6> cable_mass(double mass_per_length, double unstressed_length);
 
 }  // namespace tautline::element

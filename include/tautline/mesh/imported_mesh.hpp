@@ -15,7 +15,8 @@ namespace tautline::mesh {
 struct CellGroup {
   std::vector<int> points;  ///< node indices of point cells, and of nothing else
   std::vector<std::array<int, 2>> lines;
-  std::vector<std::array<int, 3>> triangles;  ///< quadrilaterals are split along the shorter diagonal
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<std::array<int, 4>> quadrilaterals;
 };
 
 struct ImportedMesh {

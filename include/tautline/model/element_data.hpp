@@ -6,27 +6,54 @@
 
 #include <tautline/element/beam.hpp>
 #include <tautline/element/cable.hpp>
+#include <tautline/element/catenary.hpp>
 #include <tautline/model/model.hpp>
+#include <tautline/model/section.hpp>
 #include <tautline/model/state.hpp>
 
 namespace tautline::model {
+
+/// Reference coordinates of an element's nodes, column = node [m].
+template <int N, class Nodes>
+Mat<3, N> reference_nodes(const Model& model, const Nodes& nodes) {
+  Mat<3, N> x_ref;
+  for (int i = 0; i < N; ++i) x_ref.col(i) = model.nodes[nodes[i]];
+  return x_ref;
+}
+
+/// Displacements of an element's nodes, one after the other.
+template <int N, class Nodes>
+Vec<3 * N> displacements(const State& state, const Nodes& nodes) {
+  Vec<3 * N> u;
+  for (int i = 0; i < N; ++i) u.template segment<3>(3 * i) = state.displacement[nodes[i]];
+  return u;
+}
 
 struct CableData {
   element::CableProperties properties;
   Mat<3, 2> x_ref;
 };
 
+/// Warmth lengthens the unstressed cable: 1 + eps0 becomes (1 + eps0) / (1 + alpha dT).
 inline CableData cable_data(const Model& model, const Cable& cable) {
-  CableData data{{model.groups[cable.group].cable.axial_stiffness, cable.initial_strain}, {}};
-  data.x_ref << model.nodes[cable.nodes[0]], model.nodes[cable.nodes[1]];
-  return data;
+  const Group& group = model.groups[cable.group];
+  const double thermal = group.thermal_expansion * group.temperature_change;
+  const double strain = thermal == 0 ? cable.initial_strain : (cable.initial_strain - thermal) / (1 + thermal);
+  return {{group.cable.axial_stiffness, strain, group.kind == ElementKind::bar},
+          reference_nodes<2>(model, cable.nodes)};
+}
+
+inline element::CatenaryProperties catenary_properties(const Model& model, const Cable& cable) {
+  const Group& group = model.groups[cable.group];
+  const double warm = 1 + group.thermal_expansion * group.temperature_change;
+  return {group.cable.axial_stiffness, model.unstressed_length(cable) * warm,
+          group.cable.mass_per_length / warm};
 }
 
 inline element::BeamGeometry beam_geometry(const Model& model, const Beam& beam) {
-  element::BeamGeometry geometry;
-  geometry.x_ref << model.nodes[beam.nodes[0]], model.nodes[beam.nodes[1]];
-  geometry.frame = beam.frame;
-  return geometry;
+  const Group& group = model.groups[beam.group];
+  return {reference_nodes<2>(model, beam.nodes), beam.frame,
+          group.thermal_expansion * group.temperature_change};
 }
 
 inline element::BeamMotion beam_motion(const State& state, const Beam& beam) {
@@ -36,19 +63,59 @@ inline element::BeamMotion beam_motion(const State& state, const Beam& beam) {
   return motion;
 }
 
-inline Mat<3, 3> membrane_nodes(const Model& model, const Membrane& membrane) {
-  Mat<3, 3> x_ref;
-  x_ref << model.nodes[membrane.nodes[0]], model.nodes[membrane.nodes[1]], model.nodes[membrane.nodes[2]];
-  return x_ref;
+/// Section of a beam element: of the group, or where the element's middle lies along a tapered one.
+inline element::BeamSection beam_section(const Model& model, const Beam& beam) {
+  const Group& group = model.groups[beam.group];
+  return group.taper ? tapered_section(*group.taper, (beam.span[0] + beam.span[1]) / 2) : group.beam;
 }
 
-/// Displacements of an element's nodes, one after the other.
-template <std::size_t N>
-Vec<3 * static_cast<int>(N)> gather(const State& state, const std::array<int, N>& nodes) {
-  Vec<3 * static_cast<int>(N)> u;
-  for (std::size_t i = 0; i < N; ++i)
-    u.template segment<3>(3 * static_cast<int>(i)) = state.displacement[nodes[i]];
-  return u;
+/// Angle from axis 1 of a facet's frame to the projection of `direction` on its plane [rad]; 0 if there is
+/// none.
+inline double angle_in(const Mat3& frame, const Vec3& direction) {
+  const double along = frame.col(0).dot(direction), across = frame.col(1).dot(direction);
+  return std::hypot(along, across) <= 1e-6 * direction.norm() ? 0.0 : std::atan2(across, along);
+}
+
+template <int N>
+element::MembraneLaw membrane_law(const Model& model, const Membrane& membrane) {
+  const Group& group = model.groups[membrane.group];
+  const double angle =
+      group.membrane.orthotropic()
+          ? angle_in(element::membrane_frame<N>(reference_nodes<N>(model, membrane.nodes)), group.orientation)
+          : 0.0;
+  return element::membrane_law(group.membrane, angle, membrane.prestress, group.temperature_change);
+}
+
+template <int N>
+element::ShellGeometry<N> shell_geometry(const Model& model, const Shell& shell) {
+  const Group& group = model.groups[shell.group];
+  element::ShellGeometry<N> geometry;
+  geometry.x_ref = reference_nodes<N>(model, shell.nodes);
+  for (int i = 0; i < N; ++i) geometry.director.col(i) = shell.director[static_cast<std::size_t>(i)];
+  geometry.prestress = shell.prestress;
+  geometry.free_strain = group.shell.thermal_expansion * group.temperature_change;
+  return geometry;
+}
+
+template <int N>
+element::ShellMotion<N> shell_motion(const State& state, const Shell& shell) {
+  element::ShellMotion<N> motion;
+  for (int i = 0; i < N; ++i) {
+    motion.u.col(i) = state.displacement[shell.nodes[i]];
+    motion.rotation[static_cast<std::size_t>(i)] = state.rotation[shell.nodes[i]];
+  }
+  return motion;
+}
+
+/// A grounded spring's first node rests.
+inline element::SpringMotion spring_motion(const State& state, const Spring& spring) {
+  element::SpringMotion motion;
+  const std::size_t first = 2 - spring.nodes.size();
+  for (std::size_t i = 0; i < spring.nodes.size(); ++i) {
+    motion.u.col(static_cast<int>(first + i)) = state.displacement[spring.nodes[i]];
+    motion.rotation[first + i] = state.rotation[spring.nodes[i]];
+  }
+  return motion;
 }
 
 }  // namespace tautline::model

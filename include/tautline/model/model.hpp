@@ -5,34 +5,63 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <tautline/core/types.hpp>
 #include <tautline/element/beam.hpp>
 #include <tautline/element/membrane.hpp>
+#include <tautline/element/shell.hpp>
+#include <tautline/element/spring.hpp>
+#include <tautline/model/facet.hpp>
+#include <tautline/model/model_options.hpp>
 
 namespace tautline::model {
 
 struct CableSection {
   double axial_stiffness = 0;  ///< E A [N]
-  double mass_per_length = 0;  ///< [kg/m]
+  double mass_per_length = 0;  ///< per unstressed length [kg/m]
 };
 
-enum class ElementKind { cable, beam, membrane };
+/// A beam whose dimensions change from its start to its end: what a section at a place along it follows from.
+struct TaperedTube {
+  std::array<double, 2> diameter{0, 0};   ///< mean diameter at start and end [m]
+  std::array<double, 2> thickness{0, 0};  ///< [m]
+  MaterialOptions material;
+  bool shear_flexible = true;
+};
+
+struct PointMass {
+  double mass = 0;              ///< [kg]
+  Vec3 inertia = Vec3::Zero();  ///< about x, y, z [kg m^2]
+};
 
 /// Elements of one kind with one section. Every element belongs to exactly one group, by index into
 /// Model::groups.
 struct Group {
   std::string name;
   ElementKind kind = ElementKind::cable;
-  CableSection cable;                 ///< valid where kind == cable
-  element::BeamSection beam;          ///< valid where kind == beam
+  CableSection cable;                 ///< valid where kind == cable, bar, catenary
+  element::BeamSection beam;          ///< valid where kind == beam; of a tapered one, at its middle
+  std::optional<TaperedTube> taper;   ///< beams that are not prismatic
   element::MembraneSection membrane;  ///< valid where kind == membrane
-  Vec3 orientation = Vec3::Zero();    ///< beams: local axis 3 lies in the plane of the beam and this vector
-  double target_tension = 0;          ///< cables: tension asked of form-finding [N]; 0 if none
+  element::ShellSection shell;        ///< valid where kind == shell
+  element::SpringProperties spring;   ///< valid where kind == spring
+  PointMass mass;                     ///< valid where kind == mass
+  double thermal_expansion = 0;       ///< of cables, bars, catenaries and beams [1/K]
+  double temperature_change = 0;      ///< from the reference temperature, at present [K]
+  Vec3 orientation = Vec3::Zero();    ///< beams: local axis 3 lies in the plane of the beam and this vector;
+                                    ///< membranes and shells: axis 1 of material and prestress lies along it
+  double target_tension = 0;  ///< cables: tension asked of form-finding [N]; 0 if none
 };
 
+/// Whether elements of the kind are kept in Model::cables.
+constexpr bool is_cable_like(ElementKind kind) {
+  return kind == ElementKind::cable || kind == ElementKind::bar || kind == ElementKind::catenary;
+}
+
+/// A cable, bar or catenary, by the kind of its group.
 struct Cable {
   std::array<int, 2> nodes;
   int group = 0;
@@ -45,35 +74,95 @@ struct Beam {
   int group = 0;
   Mat3 frame = Mat3::Identity();  ///< reference frame, columns local axes
   int parent = 0;
+  std::array<double, 2> span{0, 1};  ///< place of its ends along the beam before subdivision, 0 to 1
 };
 
 struct Membrane {
-  std::array<int, 3> nodes;
+  FacetNodes nodes;
   int group = 0;
   Vec3 prestress = Vec3::Zero();  ///< N11, N22, N12 in element::membrane_frame [N/m]
   int parent = 0;
 };
 
-/// A named selection of nodes and elements; groups are selections by themselves and need none.
-struct Selection {
-  std::vector<int> nodes, cables, beams, membranes;
+struct Shell {
+  FacetNodes nodes;
+  int group = 0;
+  Vec3 prestress = Vec3::Zero();  ///< N11, N22, N12 in element::shell_frame [N/m]
+  int parent = 0;
+  std::array<Vec3, 4> director;  ///< unit normals of the mid-surface at the nodes, see find_directors
 };
 
-/// Degrees of freedom 0..2 are displacements along x, y, z [m], 3..5 rotations about them [rad].
+/// A spring between two nodes, or from the ground to one.
+struct Spring {
+  std::vector<int> nodes;
+  int group = 0;
+  bool grounded() const { return nodes.size() == 1; }
+};
+
+struct MassElement {
+  std::array<int, 1> nodes;
+  int group = 0;
+};
+
+/// @brief A node that follows another through a rigid arm.
+///
+/// The follower's displacement is that of the arm's end; its rotation is the leader's, or turned against it
+/// about the axes of `hinge`, or free.
+struct Link {
+  int leader = 0, follower = 0;
+  bool rotation_free = false;
+  /// Axes of free relative rotation in the reference configuration; at most three, in order of rotation from
+  /// the leader's side; none: rotation tied.
+  std::vector<Vec3> hinge;
+  int group = -1;  ///< of a rigid link or hinge; -1: the end of a beam
+};
+
+/// Follower = turn x leader, displacements and rotations: sectors of a cyclic structure.
+struct CyclicPair {
+  int leader = 0, follower = 0;
+  Mat3 turn = Mat3::Identity();
+};
+
+/// Sum of coefficient x displacement component = 0; the first term's component follows from the others.
+struct LinearConstraint {
+  struct Term {
+    int node = 0, component = 0;
+    double coefficient = 0;
+  };
+  std::vector<Term> terms;
+};
+
+/// A named selection of nodes and elements; groups are selections by themselves and need none.
+struct Selection {
+  std::vector<int> nodes, cables, beams, membranes, shells, springs, masses;
+  std::vector<std::array<int, 2>> edges;  ///< sides of facets, for supports and line loads
+};
+
+/// Degrees of freedom 0..2 are displacements along the support's axes [m], 3..5 rotations about them [rad].
 struct Support {
   std::string name;
   std::vector<std::string> on;  ///< groups and selections; `nodes` are theirs
   std::vector<int> nodes;
   std::array<bool, 6> fixed{true, true, true, true, true, true};
+  Mat3 axes = Mat3::Identity();  ///< columns: the directions x, y, z that `fixed` means
 };
 
-/// A dead nodal load at full load factor. It stays on the nodes of the structure as described, whatever the
-/// mesh.
-struct NodalLoad {
+/// What acts at full load factor. Forces and motions act on the nodes of the structure as described, whatever
+/// the mesh; line, surface and temperature loads on the elements of `on`.
+struct Load {
   std::string name;
+  std::vector<std::string> on;  ///< groups and selections
   std::vector<int> nodes;
-  Vec3 force = Vec3::Zero();   ///< [N], on each node
-  Vec3 moment = Vec3::Zero();  ///< [N m], on each node
+  Vec3 force = Vec3::Zero();          ///< dead force on each node [N]
+  Vec3 moment = Vec3::Zero();         ///< dead moment on each node [N m]
+  std::optional<Vec3> displacement;   ///< of the supported directions of each node [m]
+  std::optional<Vec3> rotation;       ///< rotation vector of the supported directions of each node [rad]
+  Vec3 line_force = Vec3::Zero();     ///< dead force per reference length of cables, beams and edges [N/m]
+  Vec3 line_moment = Vec3::Zero();    ///< dead moment per reference length of beams and edges [N]
+  Vec3 surface_force = Vec3::Zero();  ///< dead force per reference area of membranes and shells [Pa]
+  double pressure = 0;                ///< follows the facets, along their normals [Pa]
+  double temperature_change = 0;      ///< of groups [K]
+  Vec3 acceleration = Vec3::Zero();   ///< body force per mass on the whole structure, e.g. gravity [m/s^2]
 };
 
 struct Model {
@@ -82,25 +171,50 @@ struct Model {
   std::vector<Cable> cables;
   std::vector<Beam> beams;
   std::vector<Membrane> membranes;
+  std::vector<Shell> shells;
+  std::vector<Spring> springs;
+  std::vector<MassElement> masses;
+  std::vector<Link> links;
+  std::vector<CyclicPair> cyclic_pairs;
+  std::vector<LinearConstraint> constraints;
   std::map<std::string, Selection> selections;
   std::vector<Support> supports;
-  std::vector<NodalLoad> loads;
-  Vec3 acceleration = Vec3::Zero();  ///< body force per mass at full load factor, e.g. gravity [m/s^2]
+  std::vector<Load> loads;
+  Vec3 acceleration = Vec3::Zero();  ///< body force per mass at present, which catenaries feel [m/s^2]
 
   /// Index of the group, or -1.
   int find_group(const std::string& name) const;
   /// All elements and nodes of a group or of a selection. @throws ModelError naming the nearest known name.
   Selection select(const std::string& name) const;
-  /// Sorted, unique nodes of the named groups and selections (their elements' nodes and their own).
+  /// Sorted, unique nodes of the named groups and selections (their elements' nodes and their own), the end
+  /// of a beam on a hinge or offset replaced by the node it hangs on.
   std::vector<int> nodes_of(const std::vector<std::string>& names) const;
   /// Sorted names of all groups and selections.
   std::vector<std::string> names() const;
-  /// Whether each node carries rotations (a beam is attached).
+  /// Whether each node carries rotations (a beam, shell, link or rotational spring is attached).
   std::vector<bool> rotational_nodes() const;
 
   double reference_length(const Cable& cable) const;
   double unstressed_length(const Cable& cable) const;
 };
+
+/// Applies `visit` to the list of each kind of element.
+template <class AnyModel, class Visit>
+void for_each_kind(AnyModel&& model, const Visit& visit) {
+  visit(model.cables);
+  visit(model.beams);
+  visit(model.membranes);
+  visit(model.shells);
+  visit(model.springs);
+  visit(model.masses);
+}
+
+/// Indices of the links, each after the one that its leader follows. @throws ModelError for a ring of links
+std::vector<int> links_in_order(const Model& model);
+
+/// Unit normals at the nodes of every shell: the mean over the shells of the same group that meet there at
+/// less than 20 degrees, else the shell's own. In a plane of symmetry (a support) it lies in the plane.
+void find_directors(Model& model);
 
 /// Mass of all elements [kg], and per group.
 double total_mass(const Model& model);

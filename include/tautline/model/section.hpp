@@ -15,13 +15,18 @@ using Materials = std::map<std::string, MaterialOptions>;
 /// Which kind of element a section is for.
 ElementKind kind_of(const SectionOptions& section);
 
+/// Section of a tapered tube at `place` along it, 0 at its start and 1 at its end.
+element::BeamSection tapered_section(const TaperedTube& tube, double place);
+
 /// Fills the section of `group` (kind and stiffnesses) from its options.
 /// Rectangle: torsion constant by Roark's approximation (0.5 %), shear factor 5/6. Round bar and tube: shear
-/// factors of Cowper (1966).
+/// factors of Cowper (1966). I section: thin-walled torsion constant sum b t^3/3, shear carried by the web (along
+/// axis 3) and by 5/6 of the flanges (along axis 2).
 void set_section(Group& group, const SectionOptions& section, const Materials& materials);
 
 /// Initial strains and prestress of one group's elements from the deck (`tension`, `unstressed_length`, ...);
 /// elements of groups that state nothing stay as they are.
-void set_initial_state(Model& model, int group, const GroupOptions& options);
+/// @param[in] thickness  of the section, for an initial stress [m]
+void set_initial_state(Model& model, int group, const GroupOptions& options, double thickness = 0);
 
 }  // namespace tautline::model

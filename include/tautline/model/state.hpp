@@ -12,6 +12,7 @@ namespace tautline::model {
 struct State {
   Points displacement;         ///< one for each node [m]
   std::vector<Mat3> rotation;  ///< one for each node; identity where the node has no rotations
+  Points hinge_angle;          ///< one for each link: angles about its hinge axes [rad]
 
   /// The reference configuration of `model`.
   static State reference(const Model& model);

@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// Fields for ParaView: one unstructured grid of lines and triangles with named arrays, written in parallel
+/// Fields for ParaView: one unstructured grid of lines and facets with named arrays, written in parallel
 /// pieces.
 
 #include <array>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <tautline/core/types.hpp>
+#include <tautline/model/facet.hpp>
 
 namespace tautline::output {
 
@@ -22,8 +23,8 @@ struct Field {
 struct FieldGrid {
   Points points;                                 ///< reference coordinates [m]
   std::vector<std::array<int, 2>> lines;         ///< cells first
-  std::vector<std::array<int, 3>> triangles;     ///< cells after the lines
-  std::vector<Field> point_fields, cell_fields;  ///< cell arrays in the order lines, triangles
+  std::vector<model::FacetNodes> facets;         ///< cells after the lines
+  std::vector<Field> point_fields, cell_fields;  ///< cell arrays in the order lines, facets
 };
 
 /// The part of `grid` whose cells have owner[cell] == rank; points are those the cells use.

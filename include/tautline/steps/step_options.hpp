@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <tautline/analysis/newton_options.hpp>
+#include <tautline/assembly/mass_options.hpp>
 #include <tautline/core/error.hpp>
 #include <tautline/formfinding/force_density_options.hpp>
 #include <tautline/model/subdivide.hpp>
@@ -47,7 +48,9 @@ struct EquilibriumOptions {
   std::vector<StageOptions> stages;  ///< empty: one stage with the supports only
   /// Names of the loads ramped up in the last stage, which act from then on; not given: all of the deck.
   std::optional<std::vector<std::string>> loads;
-  bool reset = false;  ///< start again from the reference configuration (as form-found)
+  bool reset = false;                ///< start again from the reference configuration (as form-found)
+  int increments = 1;                ///< the last stage comes to rest at lambda = 1/n, 2/n, ..., 1
+  std::vector<std::string> monitor;  ///< groups or selections whose motion is reported at every rest
 };
 
 /// `kind: tuning`
@@ -58,6 +61,7 @@ struct TuningStepOptions {
 /// `kind: modal`
 struct ModalOptions {
   int modes = 6;
+  assembly::MassKind mass = assembly::MassKind::consistent;
 };
 
 using AnyStep =

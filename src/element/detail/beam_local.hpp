@@ -16,11 +16,12 @@ struct BeamLocalResponse {
 
 /// @brief Linear bending and torsion, and the axial strain averaged along the shallow arch.
 ///
-/// W = EA L eps^2/2 + bending of both planes + GJ (twist)^2/(2 L),
+/// W = EA L (eps - free_strain)^2/2 + bending of both planes + GJ (twist)^2/(2 L),
 /// eps = elongation/L + mean along the beam of (v'^2 + w'^2)/2.
-/// @param[in] length  in the reference configuration [m]
-BeamLocalResponse beam_local_law(const BeamSection& section, double length, const Vec<7>& deformation,
-                                 Want want);
+/// @param[in] length       in the reference configuration [m]
+/// @param[in] free_strain  axial strain without force [-]
+BeamLocalResponse beam_local_law(const BeamSection& section, double length, double free_strain,
+                                 const Vec<7>& deformation, Want want);
 
 /// Consistent mass matrix in the axes of the beam, order (u1, spin1, u2, spin2).
 Mat<12> beam_local_mass(const BeamSection& section, double length);

@@ -61,16 +61,6 @@ void require_supported(const std::string& group, int type) {
                   name, dimension, order, group, order > 1 ? ": set Mesh.ElementOrder = 1 in gmsh" : ""));
 }
 
-void add_quadrilateral(const Points& x, const std::array<int, 4>& q, CellGroup& group) {
-  if ((x[q[2]] - x[q[0]]).norm() <= (x[q[3]] - x[q[1]]).norm()) {
-    group.triangles.push_back({q[0], q[1], q[2]});
-    group.triangles.push_back({q[0], q[2], q[3]});
-  } else {
-    group.triangles.push_back({q[0], q[1], q[3]});
-    group.triangles.push_back({q[1], q[2], q[3]});
-  }
-}
-
 void add_cells(const Nodes& nodes, int type, const std::vector<std::size_t>& tags, CellGroup& group) {
   const auto at = [&](std::size_t i) { return nodes.index_of_tag.at(tags[i]); };
   if (type == point)
@@ -82,7 +72,7 @@ void add_cells(const Nodes& nodes, int type, const std::vector<std::size_t>& tag
       group.triangles.push_back({at(i), at(i + 1), at(i + 2)});
   else
     for (std::size_t i = 0; i + 3 < tags.size(); i += 4)
-      add_quadrilateral(nodes.positions, {at(i), at(i + 1), at(i + 2), at(i + 3)}, group);
+      group.quadrilaterals.push_back({at(i), at(i + 1), at(i + 2), at(i + 3)});
 }
 
 std::map<std::string, CellGroup> read_groups(const Nodes& nodes) {
@@ -122,6 +112,8 @@ void for_each_node(std::map<std::string, CellGroup>& groups, const Action& actio
     for (auto& cell : group.lines)
       for (int& node : cell) action(node);
     for (auto& cell : group.triangles)
+      for (int& node : cell) action(node);
+    for (auto& cell : group.quadrilaterals)
       for (int& node : cell) action(node);
   }
 }

@@ -1,0 +1,82 @@
+#pragma once
+/// @file
+/// How the nodes move with the unknowns: supports in rotated axes, rigid arms, hinges, linear constraints.
+
+#include <array>
+#include <vector>
+
+#include <tautline/assembly/dof_map.hpp>
+#include <tautline/model/model.hpp>
+#include <tautline/model/state.hpp>
+
+namespace tautline::assembly {
+
+/// A part of a node's increment: matrix x the increment of an unknown block.
+struct Dependence {
+  int block = -1;
+  Mat3 matrix;
+};
+
+/// @brief Displacements and rotations of the nodes as functions of the unknowns.
+///
+/// The unknowns of a node without links or rotated supports are its own increments. Source for the rotations:
+/// spatial spins, docs/theory/conventions.md; derivation: docs/theory/constraints.md.
+class Kinematics {
+ public:
+  Kinematics() = default;
+  Kinematics(const model::Model& model, const DofMap& map);
+
+  /// Directions of the unknowns for supports in rotated axes; marks what `supports` and the constraints hold.
+  /// @throws ModelError where the supports of a node contradict its links
+  void hold(const std::vector<model::Support>& supports);
+  /// Whether an unknown is held: index 3 * block + component.
+  const std::vector<bool>& held() const noexcept { return held_; }
+  /// Axes of a block's unknowns, columns in the global frame.
+  const Mat3& frame(int block) const noexcept { return frame_[static_cast<std::size_t>(block)]; }
+
+  /// Takes the arms and hinge axes of `state` for the increments about it.
+  void linearise(const model::State& state);
+  /// Whether the node's blocks are its unknowns as they stand.
+  bool plain(int node) const noexcept { return plain_[static_cast<std::size_t>(node)]; }
+  const std::vector<Dependence>& displacement(int node) const {
+    return displacement_[static_cast<std::size_t>(node)];
+  }
+  const std::vector<Dependence>& rotation(int node) const {
+    return rotation_[static_cast<std::size_t>(node)];
+  }
+
+  /// State reached from `state` by increments of the unknowns (all of them, of every rank).
+  model::State moved(const model::State& state, const std::vector<double>& increments) const;
+  /// Puts followers where their leaders want them.
+  void carry_followers(model::State& state) const;
+  /// The increment of the unknowns of one block that turns and moves it as the nodal increment `value`.
+  Vec3 unknown_of(int block, const Vec3& value) const { return frame(block).transpose() * value; }
+
+  /// Links whose follower is `node`, or -1.
+  int link_of(int node) const noexcept { return link_of_[static_cast<std::size_t>(node)]; }
+  /// Part of the second derivative that a force and moment on a link's follower add, order (leader's spin, hinge
+  /// angles); see the theory page.
+  Mat<6> second_derivative(int link, const Vec3& force, const Vec3& moment) const;
+  /// From the leader of a link to its follower, at present [m].
+  const Vec3& lever(int link) const { return arms_[static_cast<std::size_t>(link)].lever; }
+
+ private:
+  struct Arm {
+    Vec3 lever;              ///< from leader to follower, at present
+    std::array<Vec3, 3> axis;  ///< hinge axes at present
+  };
+
+  void find_fixed_dependences();
+  Mat3 leader_rotation(const model::State& state, const model::Link& link) const;
+
+  const model::Model* model_ = nullptr;
+  const DofMap* map_ = nullptr;
+  std::vector<bool> plain_, held_;
+  std::vector<Mat3> frame_;
+  std::vector<std::vector<Dependence>> displacement_, rotation_;  // by node
+  std::vector<int> link_of_;
+  std::vector<Arm> arms_;   // by link
+  std::vector<int> order_;  // of the links, leaders first
+};
+
+}  // namespace tautline::assembly

@@ -1,0 +1,228 @@
+#include <tautline/assembly/kinematics.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <tautline/core/error.hpp>
+
+#include "assembly/rotation.hpp"
+
+namespace tautline::assembly {
+
+namespace {
+
+Mat3 skew(const Vec3& v) {
+  Mat3 matrix;
+  matrix << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
+  return matrix;
+}
+
+/// Directions in which a block is held; orthonormal, at most three.
+class HeldDirections {
+ public:
+  void add(const Vec3& direction) {
+    Vec3 rest = direction.normalized();
+    for (const Vec3& known : basis_) rest -= known * known.dot(rest);
+    if (rest.norm() > 1e-8) basis_.push_back(rest.normalized());
+  }
+  int count() const { return static_cast<int>(basis_.size()); }
+  /// Whether every direction is a coordinate axis.
+  bool along_axes() const {
+    return std::all_of(basis_.begin(), basis_.end(),
+                       [](const Vec3& d) { return d.cwiseAbs().maxCoeff() == 1; });
+  }
+  bool holds(int component) const {
+    return std::any_of(basis_.begin(), basis_.end(),
+                       [&](const Vec3& d) { return std::abs(d[component]) == 1; });
+  }
+  /// Orthonormal axes, the held directions first.
+  Mat3 frame() const {
+    HeldDirections all = *this;
+    for (int c = 0; c < 3; ++c) all.add(Vec3::Unit(c));
+    Mat3 result;
+    for (int k = 0; k < 3; ++k) result.col(k) = all.basis_[static_cast<std::size_t>(k)];
+    return result;
+  }
+
+ private:
+  std::vector<Vec3> basis_;
+};
+
+}  // namespace
+
+Kinematics::Kinematics(const model::Model& model, const DofMap& map)
+    : model_(&model),
+      map_(&map),
+      plain_(model.nodes.size(), true),
+      held_(static_cast<std::size_t>(3 * map.layout.total), false),
+      frame_(static_cast<std::size_t>(map.layout.total), Mat3::Identity()),
+      displacement_(model.nodes.size()),
+      rotation_(model.nodes.size()),
+      link_of_(model.nodes.size(), -1),
+      arms_(model.links.size()),
+      order_(model::links_in_order(model)) {
+  for (std::size_t i = 0; i < model.links.size(); ++i)
+    link_of_[model.links[i].follower] = static_cast<int>(i);
+  hold({});
+  linearise(model::State::reference(model));
+}
+
+void Kinematics::hold(const std::vector<model::Support>& supports) {
+  std::vector<HeldDirections> directions(frame_.size());
+  for (const auto& support : supports)
+    for (const int node : support.nodes)
+      for (int c = 0; c < 6; ++c) {
+        const int block = c < 3 ? map_->displacement_block[node] : map_->rotation_block[node];
+        if (support.fixed[c] && block >= 0) directions[block].add(support.axes.col(c % 3));
+      }
+  held_.assign(held_.size(), false);
+  std::fill(frame_.begin(), frame_.end(), Mat3::Identity());
+  for (std::size_t block = 0; block < directions.size(); ++block) {
+    const auto& at = directions[block];
+    const bool along_axes = at.along_axes();
+    if (!along_axes) frame_[block] = at.frame();
+    for (int c = 0; c < 3; ++c) held_[3 * block + c] = along_axes ? at.holds(c) : c < at.count();
+  }
+  for (const auto& link : model_->links)
+    if (const int block = map_->rotation_block[link.follower]; block >= 0 && !link.rotation_free) {
+      frame_[block].setIdentity();
+      for (std::size_t c = link.hinge.size(); c < 3; ++c) held_[3 * block + c] = true;
+    }
+  for (const auto& constraint : model_->constraints) {
+    const auto& first = constraint.terms.front();
+    const int block = map_->displacement_block[first.node];
+    if (held_[3 * block + first.component] || frame_[block] != Mat3::Identity())
+      throw ModelError(fmt::format(
+          "node {} is held by a support in a direction that follows from a linear constraint: write the "
+          "constraint with another node first, or hold the others",
+          first.node + 1));
+    held_[3 * block + first.component] = true;
+  }
+  for (std::size_t node = 0; node < plain_.size(); ++node) {
+    const int u = map_->displacement_block[node], r = map_->rotation_block[node];
+    plain_[node] = u >= 0 && frame_[u] == Mat3::Identity() && (r < 0 || frame_[r] == Mat3::Identity());
+  }
+  for (const auto& constraint : model_->constraints) plain_[constraint.terms.front().node] = false;
+  find_fixed_dependences();
+}
+
+void Kinematics::find_fixed_dependences() {
+  const auto& m = *map_;
+  for (std::size_t node = 0; node < displacement_.size(); ++node) {
+    const auto own = [&](int block, std::vector<Dependence>& list) {
+      list.clear();
+      if (block >= 0) list.push_back({block, frame_[block]});
+    };
+    own(m.displacement_block[node], displacement_[node]);
+    own(m.rotation_block[node], rotation_[node]);
+  }
+  for (const auto& pair : model_->cyclic_pairs) {
+    const int u = m.displacement_block[pair.leader], r = m.rotation_block[pair.leader];
+    displacement_[pair.follower] = {{u, pair.turn * frame_[u]}};
+    if (r >= 0) rotation_[pair.follower] = {{r, pair.turn * frame_[r]}};
+  }
+  for (const auto& constraint : model_->constraints) {
+    const auto& first = constraint.terms.front();
+    for (std::size_t k = 1; k < constraint.terms.size(); ++k) {
+      const auto& term = constraint.terms[k];
+      const int block = m.displacement_block[term.node];
+      Mat3 matrix = Mat3::Zero();
+      matrix.row(first.component) = -term.coefficient / first.coefficient * frame_[block].row(term.component);
+      displacement_[first.node].push_back({block, matrix});
+    }
+  }
+}
+
+void Kinematics::linearise(const model::State& state) {
+  const auto& m = *map_;
+  for (const int i : order_) {
+    const auto& link = model_->links[i];
+    auto& arm = arms_[i];
+    const Mat3 turn = leader_rotation(state, link);
+    arm.lever = turn * (model_->nodes[link.follower] - model_->nodes[link.leader]);
+    Mat3 so_far = turn, axes = Mat3::Zero();
+    for (std::size_t k = 0; k < link.hinge.size(); ++k) {
+      arm.axis[k] = so_far * link.hinge[k];
+      axes.col(static_cast<int>(k)) = arm.axis[k];
+      so_far = so_far * rotation_of(link.hinge[k] * state.hinge_angle[i][static_cast<int>(k)]);
+    }
+    const auto& leader_turn = rotation_[link.leader];
+    auto& displacement = displacement_[link.follower];
+    displacement = displacement_[link.leader];
+    for (const auto& [block, matrix] : leader_turn)
+      displacement.push_back({block, -skew(arm.lever) * matrix});
+    if (!m.rotational[link.follower] || link.rotation_free) continue;
+    auto& rotation = rotation_[link.follower];
+    rotation = leader_turn;
+    if (!link.hinge.empty()) rotation.push_back({m.rotation_block[link.follower], axes});
+  }
+}
+
+Mat3 Kinematics::leader_rotation(const model::State& state, const model::Link& link) const {
+  return map_->rotational[link.leader] ? state.rotation[link.leader] : Mat3(Mat3::Identity());
+}
+
+model::State Kinematics::moved(const model::State& from, const std::vector<double>& increments) const {
+  model::State state = from;
+  const auto increment = [&](int block) -> Vec3 {
+    const Eigen::Map<const Vec3> x(&increments[static_cast<std::size_t>(3 * block)]);
+    return frame_[block] * x;
+  };
+  for (std::size_t node = 0; node < model_->nodes.size(); ++node) {
+    const int u = map_->displacement_block[node], r = map_->rotation_block[node];
+    if (u >= 0) state.displacement[node] += increment(u);
+    if (r < 0) continue;
+    const int link = link_of_[node];
+    if (link >= 0 && !model_->links[link].hinge.empty())
+      state.hinge_angle[link] += increment(r);
+    else
+      state.rotation[node] = rotation_of(increment(r)) * state.rotation[node];
+  }
+  carry_followers(state);
+  return state;
+}
+
+void Kinematics::carry_followers(model::State& state) const {
+  for (const auto& constraint : model_->constraints) {
+    const auto& first = constraint.terms.front();
+    double sum = 0;
+    for (std::size_t k = 1; k < constraint.terms.size(); ++k)
+      sum += constraint.terms[k].coefficient *
+             state.displacement[constraint.terms[k].node][constraint.terms[k].component];
+    state.displacement[first.node][first.component] = -sum / first.coefficient;
+  }
+  for (const int i : order_) {
+    const auto& link = model_->links[i];
+    const Mat3 turn = leader_rotation(state, link);
+    const Vec3 lever = model_->nodes[link.follower] - model_->nodes[link.leader];
+    state.displacement[link.follower] = state.displacement[link.leader] + turn * lever - lever;
+    if (!map_->rotational[link.follower] || link.rotation_free) continue;
+    Mat3 rotation = turn;
+    for (std::size_t k = 0; k < link.hinge.size(); ++k)
+      rotation = rotation * rotation_of(link.hinge[k] * state.hinge_angle[i][static_cast<int>(k)]);
+    state.rotation[link.follower] = rotation;
+  }
+  for (const auto& pair : model_->cyclic_pairs) {
+    state.displacement[pair.follower] = pair.turn * state.displacement[pair.leader];
+    state.rotation[pair.follower] = pair.turn * state.rotation[pair.leader] * pair.turn.transpose();
+  }
+}
+
+Mat<6> Kinematics::second_derivative(int index, const Vec3& force, const Vec3& moment) const {
+  const auto& link = model_->links[index];
+  const auto& arm = arms_[index];
+  Mat<6> h = Mat<6>::Zero();
+  h.topLeftCorner<3, 3>() = (arm.lever * force.transpose() + force * arm.lever.transpose()) / 2 -
+                            arm.lever.dot(force) * Mat3::Identity();
+  const auto n = static_cast<int>(link.hinge.size());
+  for (int k = 0; k < n; ++k) {
+    h.block<3, 1>(0, 3 + k) = arm.axis[k].cross(moment) / 2;
+    for (int j = 0; j < k; ++j) h(3 + j, 3 + k) = moment.dot(arm.axis[j].cross(arm.axis[k])) / 2;
+  }
+  h.triangularView<Eigen::StrictlyLower>() = h.transpose();
+  return h;
+}
+
+}  // namespace tautline::assembly

@@ -1,0 +1,175 @@
+// What acts: from the loads of a boundary to forces on nodes, pressures of facets and changes of temperature.
+#include <fmt/format.h>
+
+#include <tautline/assembly/system.hpp>
+#include <tautline/core/error.hpp>
+#include <tautline/model/element_data.hpp>
+
+#include "assembly/contribution.hpp"
+
+namespace tautline::assembly {
+
+using namespace model;
+
+namespace {
+
+/// Half of a dead line load to each end; a beam's end moments make the cubic deflection work with it.
+void add_line(const Model& model, int a, int b, bool bends, const Load& load, Acting& to) {
+  const Vec3 way = model.nodes[b] - model.nodes[a];
+  const double half = way.norm() / 2;
+  to.force[a] += half * load.line_force;
+  to.force[b] += half * load.line_force;
+  to.moment[a] += half * load.line_moment;
+  to.moment[b] += half * load.line_moment;
+  if (!bends) return;
+  const Vec3 end_moment = way.norm() / 12 * way.cross(load.line_force);
+  to.moment[a] += end_moment;
+  to.moment[b] -= end_moment;
+}
+
+/// A dead surface load shared out by the shape functions: a uniform mass under that acceleration.
+template <class Facet>
+void add_surface(const Model& model, const Facet& facet, const Vec3& load, Acting& to) {
+  const auto share = [&](const auto& mass, int n) {
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) to.force[facet.nodes[i]] += mass(3 * i, 3 * j) * load;
+  };
+  if (facet.nodes.size() == 3)
+    share(element::membrane_mass<3>(1, reference_nodes<3>(model, facet.nodes)), 3);
+  else
+    share(element::membrane_mass<4>(1, reference_nodes<4>(model, facet.nodes)), 4);
+}
+
+/// Weight of an element: its mass under the acceleration. Catenaries feel it themselves.
+template <class Element>
+void add_weight(const Model& model, const State& state, const Element& element, const Vec3& acceleration,
+                Acting& to) {
+  if constexpr (std::is_same_v<Element, Cable>)
+    if (model.groups[element.group].kind == ElementKind::catenary) return;
+  const auto mass = mass_of(model, state, element, MassKind::consistent);
+  const int n = static_cast<int>(element.nodes.size()), stride = static_cast<int>(mass.rows()) / n;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      to.force[element.nodes[i]] += mass.template block<3, 3>(stride * i, stride * j) * acceleration;
+      if (stride == 6)
+        to.moment[element.nodes[i]] += mass.template block<3, 3>(stride * i + 3, stride * j) * acceleration;
+    }
+}
+
+}  // namespace
+
+void System::add_element_loads(const Load& load, Acting& to) const {
+  for (const auto& name : load.on) {
+    const auto selected = model_.select(name);
+    if (!load.line_force.isZero(0) || !load.line_moment.isZero(0)) {
+      for (const int i : selected.cables)
+        add_line(model_, model_.cables[i].nodes[0], model_.cables[i].nodes[1], false, load, to);
+      for (const int i : selected.beams)
+        add_line(model_, model_.beams[i].nodes[0], model_.beams[i].nodes[1], true, load, to);
+      for (const auto& [a, b] : selected.edges) add_line(model_, a, b, false, load, to);
+    }
+    for (const int i : selected.membranes) {
+      add_surface(model_, model_.membranes[i], load.surface_force, to);
+      to.pressure[static_cast<std::size_t>(i)] += load.pressure;
+    }
+    for (const int i : selected.shells) {
+      add_surface(model_, model_.shells[i], load.surface_force, to);
+      to.pressure[model_.membranes.size() + static_cast<std::size_t>(i)] += load.pressure;
+    }
+    if (const int group = model_.find_group(name); group >= 0)
+      to.temperature[static_cast<std::size_t>(group)] += load.temperature_change;
+  }
+}
+
+Acting System::acting(const Boundary& boundary) const {
+  Acting result{Points(model_.nodes.size(), Vec3::Zero()),
+                Points(model_.nodes.size(), Vec3::Zero()),
+                std::vector<double>(model_.membranes.size() + model_.shells.size(), 0.0),
+                std::vector<double>(model_.groups.size(), 0.0),
+                {},
+                Vec3::Zero()};
+  for (const auto& cable : model_.cables) result.strain.push_back(cable.initial_strain);
+  for (const auto& load : boundary.loads) {
+    for (const int node : load.nodes) {
+      result.force[node] += load.force;
+      result.moment[node] += load.moment;
+    }
+    add_element_loads(load, result);
+    result.acceleration += load.acceleration;
+  }
+  if (!result.acceleration.isZero(0))
+    for_each_kind(model_, [&](const auto& elements) {
+      for (const auto& element : elements) add_weight(model_, state_, element, result.acceleration, result);
+    });
+  return result;
+}
+
+void System::find_drives(const Boundary& boundary) {
+  drives_.clear();
+  const auto drive = [&](const Load& load, int node, int block, const Vec3& target, const Vec3& so_far) {
+    const Vec3 way = block < 0 ? target : kinematics_.unknown_of(block, target - so_far);
+    Drive found{block, Vec3::Zero()};
+    for (int c = 0; c < 3; ++c) {
+      const bool is_held = block >= 0 && held()[static_cast<std::size_t>(3 * block + c)];
+      if (is_held)
+        found.way[c] = way[c];
+      else if (const Vec3 wish = block < 0 ? target : kinematics_.unknown_of(block, target);
+               std::abs(wish[c]) > 1e-12 * target.norm())
+        throw ModelError(fmt::format(
+            "load \"{}\" moves node {} in a direction that no support holds: only a support can be moved, so "
+            "add that direction to a support of the node",
+            load.name, node + 1));
+    }
+    if (!found.way.isZero(0)) drives_.push_back(found);
+  };
+  for (const auto& load : boundary.loads)
+    for (const int node : load.nodes) {
+      if (load.displacement)
+        drive(load, node, map_.displacement_block[node], *load.displacement, state_.displacement[node]);
+      if (load.rotation) drive(load, node, map_.rotation_block[node], *load.rotation, turned_[node]);
+    }
+}
+
+System::NodalForces System::ground_springs() const {
+  NodalForces result{Points(model_.nodes.size(), Vec3::Zero()), Points(model_.nodes.size(), Vec3::Zero())};
+  for (const auto& spring : model_.springs) {
+    if (!spring.grounded()) continue;
+    const auto force = contribution(model_, state_, spring, element::Want::force).force;
+    result.force[spring.nodes[0]] -= force.segment<3>(0);
+    if (force.size() == 6) result.moment[spring.nodes[0]] -= force.segment<3>(3);
+  }
+  return result;
+}
+
+System::NodalForces System::applied() const {
+  NodalForces result{now_.force, now_.moment};
+  for (std::size_t node = 0; node < model_.nodes.size(); ++node)
+    if (!map_.rotational[node]) result.moment[node].setZero();
+  const auto add_pressure = [&](const auto& facets, std::size_t first) {
+    for (std::size_t i = 0; i < facets.size(); ++i) {
+      const double pressure = now_.pressure[first + i];
+      if (pressure == 0) continue;
+      const auto c = pressure_contribution(model_, state_, facets[i].nodes, pressure, element::Want::force);
+      for (int k = 0; k < facets[i].nodes.size(); ++k)
+        result.force[facets[i].nodes[k]] += c.force.template segment<3>(3 * k);
+    }
+  };
+  add_pressure(model_.membranes, 0);
+  add_pressure(model_.shells, model_.membranes.size());
+  for (const auto& cable : model_.cables) {
+    if (model_.groups[cable.group].kind != ElementKind::catenary) continue;
+    // The catenary's end forces, weight included; at the ends they add up to the weight turned round.
+    const auto force = contribution(model_, state_, cable, element::Want::force).force;
+    const Vec3 weight = -(force.segment<3>(0) + force.segment<3>(3));
+    Vec3 moment = Vec3::Zero();
+    for (int k = 0; k < 2; ++k) {
+      const int node = cable.nodes[static_cast<std::size_t>(k)];
+      result.force[node] += weight / 2;
+      moment -= (model_.nodes[node] + state_.displacement[node]).cross(force.segment<3>(3 * k) + weight / 2);
+    }
+    result.moment[cable.nodes[0]] += moment;
+  }
+  return result;
+}
+
+}  // namespace tautline::assembly

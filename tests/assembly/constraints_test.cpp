@@ -1,0 +1,242 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "assembly/dense.hpp"
+#include "assembly/models.hpp"
+
+namespace tautline::assembly {
+namespace {
+
+using namespace testing_models;
+using std::numbers::pi;
+
+element::BeamSection rod() {
+  element::BeamSection section;
+  section.axial_stiffness = 1e6;
+  section.bending_stiffness_2 = 2e3;
+  section.bending_stiffness_3 = 3e3;
+  section.torsion_stiffness = 1e3;
+  section.mass_per_length = 2;
+  return section;
+}
+
+/// A beam 0-1, and a beam 2-3 that hangs on node 1 by `link` at node 2.
+model::Model two_beams(const Vec3& arm, model::Link link) {
+  model::Model model;
+  model.nodes = {{0, 0, 0}, {1, 0, 0}, Vec3(1, 0, 0) + arm, Vec3(2, 0.3, 0.1) + arm};
+  const int group = add_beam_group(model, "rod");
+  model.groups[group].beam = rod();
+  add_beam(model, group, 0, 1);
+  add_beam(model, group, 2, 3);
+  link.leader = 1;
+  link.follower = 2;
+  model.links.push_back(link);
+  return model;
+}
+
+/// A state that the links allow, some tenths of a metre and a radian away.
+model::State moved_state(const System& system) {
+  std::vector<double> x(static_cast<std::size_t>(system.n_dofs()));
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x[i] = system.held()[i] ? 0 : 0.2 * std::sin(1.7 * static_cast<double>(i) + 0.3);
+  return system.kinematics().moved(model::State::reference(system.model()), x);
+}
+
+/// Tangent against differences of the residual with dead loads and pressure present.
+void expect_consistent_tangent(model::Model model, const Boundary& boundary) {
+  System system(std::move(model));
+  system.begin_stage(boundary);
+  system.set_lambda(1);
+  system.set_state(moved_state(system));
+  const MatX tangent = dense_tangent(system);
+  MatX differences = derivative_of_residual(system);
+  MatX symmetric = (differences + differences.transpose()) / 2;
+  for (int i = 0; i < system.n_dofs(); ++i)
+    if (system.held()[static_cast<std::size_t>(i)]) {
+      symmetric.row(i).setZero();
+      symmetric.col(i).setZero();
+      symmetric(i, i) = tangent(i, i);
+    }
+  EXPECT_LT((tangent - symmetric).norm(), 1e-8 * tangent.norm());
+  EXPECT_LT((tangent - tangent.transpose()).norm(), 1e-13 * tangent.norm());
+}
+
+Boundary clamped_with_loads() {
+  return {{support({0}, clamped)}, {load(3, {30, -20, 50}, {0, 0, 0}), load(2, {10, 40, -20}, {0, 0, 0})}};
+}
+
+TEST(Links, TangentOfARigidArmIsTheDerivativeOfTheResidual) {
+  expect_consistent_tangent(two_beams({0.2, 0.5, -0.3}, {}), clamped_with_loads());
+}
+
+TEST(Links, TangentOfABallJointAtTheEndOfAnArmIsTheDerivativeOfTheResidual) {
+  model::Link ball;
+  ball.rotation_free = true;
+  expect_consistent_tangent(two_beams({0.2, 0.5, -0.3}, ball), clamped_with_loads());
+}
+
+TEST(Links, TangentOfAHingeIsTheDerivativeOfTheResidual) {
+  model::Link hinge;
+  hinge.hinge = {Vec3(0.6, 0, 0.8)};
+  expect_consistent_tangent(two_beams({0, 0, 0}, hinge), clamped_with_loads());
+}
+
+TEST(Links, TangentOfAUniversalJointOnAnArmIsTheDerivativeOfTheResidual) {
+  model::Link joint;
+  joint.hinge = {Vec3(0, 1, 0), Vec3(0, 0, 1)};
+  expect_consistent_tangent(two_beams({0.1, 0.2, 0.3}, joint), clamped_with_loads());
+}
+
+TEST(Links, TangentOfAChainIsTheDerivativeOfTheResidual) {
+  model::Link hinge;
+  hinge.hinge = {Vec3(0, 1, 0)};
+  auto model = two_beams({0.1, 0.2, 0.3}, hinge);
+  model.nodes.emplace_back(1.5, 0.9, 0.4);  // node 4, rigid on node 2, carries a beam to node 5
+  model.nodes.emplace_back(1.9, 1.6, 0.2);
+  add_beam(model, 0, 4, 5);
+  model.links.push_back({2, 4, false, {}, -1});
+  auto boundary = clamped_with_loads();
+  boundary.loads.push_back(load(5, {5, 10, -15}));
+  boundary.loads.push_back(load(4, {-15, 10, 5}));
+  expect_consistent_tangent(model, boundary);
+}
+
+TEST(Links, AFollowerStaysAtItsPlaceOnTheLeader) {
+  System system(two_beams({0.2, 0.5, -0.3}, {}));
+  const auto state = moved_state(system);
+  const Vec3 arm = Vec3(0.2, 0.5, -0.3);
+  const auto x = model::positions(system.model(), state);
+  EXPECT_LT((x[2] - x[1] - state.rotation[1] * arm).norm(), 1e-15);
+  EXPECT_LT((state.rotation[2] - state.rotation[1]).norm(), 1e-15);
+}
+
+TEST(Links, AHingeKeepsItsAxisInBothParts) {
+  model::Link hinge;
+  const Vec3 axis(0.6, 0, 0.8);
+  hinge.hinge = {axis};
+  System system(two_beams({0, 0, 0}, hinge));
+  const auto state = moved_state(system);
+  EXPECT_LT((state.rotation[2] * axis - state.rotation[1] * axis).norm(), 1e-15);
+  EXPECT_GT((state.rotation[2] - state.rotation[1]).norm(), 0.05);
+}
+
+TEST(Links, ALoadOnAnArmReachesTheSupportWithItsMoment) {
+  System system(two_beams({0, 0.5, 0}, {}));
+  Boundary boundary{{support({0}, clamped)}, {load(2, {0, 0, 3})}};
+  solve(system, boundary);
+  const auto reactions = system.reactions();
+  const auto x = model::positions(system.model(), system.state());
+  EXPECT_LT((reactions.force[0] + Vec3(0, 0, 3)).norm(), 1e-9);
+  EXPECT_LT((reactions.moment[0] + x[2].cross(Vec3(0, 0, 3))).norm(), 1e-8);
+}
+
+TEST(Links, RingsAreRefused) {
+  auto model = two_beams({0, 0, 1}, {});
+  model.links.push_back({2, 1, false, {}, -1});
+  EXPECT_THROW(model::links_in_order(model), ModelError);
+}
+
+/// A cantilever along x whose tip may slide along a direction at 30 degrees in the x-z plane.
+TEST(RotatedSupports, LetTheNodeSlideAlongTheirFreeDirection) {
+  auto model = cantilever(4, 1.0, rod());
+  model::Support roller = support({4}, {false, false, true, false, false, false});
+  const double a = pi / 6;
+  roller.axes << std::cos(a), 0, -std::sin(a), 0, 1, 0, std::sin(a), 0, std::cos(a);
+  System system(model);
+  const Boundary boundary{{support({0}, clamped), roller}, {load(2, {0, 0, -40})}};
+  solve(system, boundary);
+  const Vec3 u = system.state().displacement[4], normal = roller.axes.col(2);
+  EXPECT_NEAR(u.dot(normal), 0, 1e-14);
+  EXPECT_GT(std::abs(u.dot(roller.axes.col(0))), 1e-6);
+  const Vec3 reaction = system.reactions().force[4];
+  EXPECT_LT((reaction - normal * normal.dot(reaction)).norm(), 1e-9);
+  const auto sum = resultant(system, boundary);
+  EXPECT_LT(sum.force.norm(), 1e-8);
+  EXPECT_LT(sum.moment.norm(), 1e-8);
+}
+
+TEST(RotatedSupports, TangentIsTheDerivativeOfTheResidual) {
+  model::Support roller = support({3}, {true, false, false, false, true, false});
+  roller.axes = Eigen::AngleAxisd(0.7, Vec3(1, 2, 2) / 3).toRotationMatrix();
+  auto boundary = clamped_with_loads();
+  boundary.supports.push_back(roller);
+  expect_consistent_tangent(two_beams({0.2, 0.5, -0.3}, {}), boundary);
+}
+
+/// Two equal cantilevers side by side; the second's tip sinks twice as far as the first's.
+TEST(LinearConstraint, SharesALoadByVirtualWork) {
+  model::Model model;
+  model.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  const int group = add_beam_group(model, "rod");
+  model.groups[group].beam = rod();
+  add_beam(model, group, 0, 1);
+  add_beam(model, group, 2, 3);
+  model.constraints.push_back({{{3, 2, 1.0}, {1, 2, -2.0}}});
+  System system(model);
+  const double p = 1e-3, k = 3 * rod().bending_stiffness_2;
+  solve(system, {{support({0, 2}, clamped)}, {load(1, {0, 0, p})}});
+  // energy k w^2/2 + k (2 w)^2/2 - p w
+  EXPECT_NEAR(system.state().displacement[1].z(), p / (5 * k), 1e-6 * p / k);
+  EXPECT_NEAR(system.state().displacement[3].z(), 2 * system.state().displacement[1].z(), 1e-18);
+}
+
+/// A prescribed rotation rolls a cantilever up: M = E I theta / L and a circle, whatever the angle.
+TEST(PrescribedMotion, RollsACantileverUpToTwoTurns) {
+  auto model = cantilever(40, 1.0, rod());
+  model.groups[0].beam.axial_stiffness = 1e8;
+  System system(model);
+  Boundary boundary{{support({0}, clamped), support({40}, {false, false, false, true, true, true})}, {}};
+  model::Load turn;
+  turn.name = "turn";
+  turn.nodes = {40};
+  turn.rotation = Vec3(0, -4 * pi, 0);
+  boundary.loads = {turn};
+  solve(system, boundary);
+  EXPECT_NEAR(system.reactions().moment[40].y(), -4 * pi * 2e3, 1e-6 * 4 * pi * 2e3);
+  // 20 elements for a turn: the chord polygon closes as the circle does
+  const auto x = model::positions(system.model(), system.state());
+  EXPECT_LT(x[40].norm(), 1e-5);
+  EXPECT_LT(x[20].norm(), 1e-5);
+}
+
+TEST(PrescribedMotion, OfADirectionThatNothingHoldsIsRefused) {
+  System system(cantilever(2, 1.0, rod()));
+  model::Load pull;
+  pull.name = "pull";
+  pull.nodes = {2};
+  pull.displacement = Vec3(0, 0, 0.1);
+  EXPECT_THROW(system.begin_stage({{support({0}, clamped)}, {pull}}), ModelError);
+}
+
+TEST(PrescribedMotion, GivesTheReactionOfASupportThatSinks) {
+  System system(cantilever(1, 2.0, rod()));
+  model::Load sink;
+  sink.name = "sink";
+  sink.nodes = {1};
+  sink.displacement = Vec3(0, 0, -1e-6);
+  solve(system, {{support({0}, clamped), support({1}, {false, false, true, false, false, false})}, {sink}});
+  EXPECT_NEAR(system.reactions().force[1].z(), -3 * 2e3 * 1e-6 / 8, 1e-6 * 3 * 2e3 * 1e-6 / 8);
+}
+
+/// A square of four quadrilaterals under follower pressure inside held edges, with a shell beside it.
+TEST(Pressure, TangentIsTheDerivativeOfTheResidual) {
+  model::Model model;
+  const int cloth = add_membrane_group(model, "cloth");
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) model.nodes.emplace_back(i, j, 0.1 * i * j);
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      const int a = i + 3 * j;
+      model.membranes.push_back({{a, a + 1, a + 4, a + 3}, cloth, Vec3(300, 200, 0)});
+    }
+  model::Load gas;
+  gas.on = {"cloth"};
+  gas.pressure = 4000;
+  expect_consistent_tangent(model, {{support({0, 1, 2, 3, 5, 6, 7, 8})}, {gas}});
+}
+
+}  // namespace
+}  // namespace tautline::assembly

@@ -1,0 +1,64 @@
+#pragma once
+// A system's tangent and residual as dense arrays, whole on every rank.
+
+#include <cmath>
+#include <span>
+#include <tautline/assembly/system.hpp>
+#include <tautline/model/state.hpp>
+#include <vector>
+
+namespace tautline::assembly::testing_models {
+
+/// Away from equilibrium and turned: every node by another rotation.
+inline model::State some_state(const model::Model& model) {
+  auto state = model::State::reference(model);
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    const double k = static_cast<double>(i);
+    state.displacement[i] = 0.05 * Vec3(std::sin(1 + 3 * k), std::cos(2 * k), std::sin(5 * k));
+    if (model.rotational_nodes()[i])
+      state.rotation[i] = Eigen::AngleAxisd(0.3 + 0.1 * k, Vec3(std::cos(k), std::sin(k), 0.5).normalized())
+                              .toRotationMatrix();
+  }
+  return state;
+}
+
+inline MatX dense_tangent(System& system) {
+  auto k = system.new_matrix();
+  system.tangent(k);
+  MatX dense(system.n_dofs(), system.n_dofs());
+  const auto& layout = system.layout();
+  for (int j = 0; j < system.n_dofs(); ++j) {
+    std::vector<double> unit(static_cast<std::size_t>(system.n_dofs()), 0.0), column;
+    unit[static_cast<std::size_t>(j)] = 1;
+    la::Vector x(layout), y(layout);
+    x.write(std::span(unit).subspan(3 * layout.first, 3 * layout.local));
+    k.multiply(x, y);
+    y.gather(column);
+    dense.col(j) = Eigen::Map<const VecX>(column.data(), system.n_dofs());
+  }
+  return dense;
+}
+
+inline VecX residual_at(System& system, const VecX& increment) {
+  const auto& layout = system.layout();
+  la::Vector x(layout), f(layout);
+  x.write(std::span(increment.data() + 3 * layout.first, static_cast<std::size_t>(3 * layout.local)));
+  system.residual(x, f);
+  std::vector<double> all;
+  f.gather(all);
+  return Eigen::Map<const VecX>(all.data(), system.n_dofs());
+}
+
+/// The derivative of the residual by differences: truncation h^4, rounding 1e-16/h of the stiffness.
+inline MatX derivative_of_residual(System& system) {
+  const int n = system.n_dofs();
+  const double h = 1e-3;
+  MatX result(n, n);
+  for (int j = 0; j < n; ++j) {
+    const auto at = [&](double step) { return residual_at(system, step * VecX::Unit(n, j)); };
+    result.col(j) = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+  }
+  return result;
+}
+
+}  // namespace tautline::assembly::testing_models
