@@ -52,6 +52,21 @@ double search_step(const std::function<double(double)>& slope, double slope_0) {
   return t;
 }
 
+/// Along a step of arbitrary length: bisection for where the slope has mostly gone or has changed its sign,
+/// so that the energy is lower there than at the start.
+double search_valley(const std::function<double(double)>& slope, double slope_0) {
+  constexpr int most = 40;
+  double left = 0, right = 1;
+  if (const double end = slope(1); std::isfinite(end) && end * slope_0 > 0) return 1;
+  for (int i = 0; i < most; ++i) {
+    const double t = (left + right) / 2, here = slope(t);
+    const bool before = std::isfinite(here) && here * slope_0 > 0;
+    if (std::isfinite(here) && std::abs(here) <= 0.5 * std::abs(slope_0)) return t;
+    (before ? left : right) = t;
+  }
+  return right;
+}
+
 std::string why_singular(const la::DirectSolver& solver) {
   if (!solver.failure().empty()) return solver.failure();
   const int null = solver.inertia().null;
@@ -128,8 +143,8 @@ NewtonSummary solve_newton(NonlinearProblem& problem, Workspace& workspace, cons
   callbacks.verdict = [&](int iteration, const la::Vector& f, const la::Vector& dx) {
     return judge(iteration, f, dx);
   };
-  callbacks.line_search = [&](const std::function<double(double)>& slope, double slope_0) {
-    return judge.step = search_step(slope, slope_0);
+  callbacks.line_search = [&](const std::function<double(double)>& slope, double slope_0, bool stiffened) {
+    return judge.step = stiffened ? search_valley(slope, slope_0) : search_step(slope, slope_0);
   };
   problem.restart();
   la::Vector x(problem.layout());

@@ -156,6 +156,10 @@ void System::find_rounding() {
     note(rounding_force_, bending / (length * length));
     note(rounding_moment_, std::max(section.axial_stiffness * length, bending / length));
   }
+  const double sum =
+      std::sqrt(static_cast<double>(model_.nodes.size()));  // of random errors, as norms see them
+  rounding_force_ *= sum;
+  rounding_moment_ *= sum;
 }
 
 void System::set_state(const model::State& state) {

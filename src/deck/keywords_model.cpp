@@ -155,7 +155,7 @@ Block make_model() {
   b.key("mesh", &Options::mesh_file)
       .says(
           "Instead of nodes and elements: a gmsh file (.msh), relative to the deck's folder. Its physical "
-          "groups are the groups.");
+          "groups are the groups; nodes are numbered anew, see form_finding_nodes.csv.");
   b.list("constraints", &Options::constraints, constraint_blocks())
       .says("Linear constraints between displacements.");
   b.list("cyclic", &Options::cyclic, cyclic_blocks()).says("Cyclic symmetry between two faces of a sector.");

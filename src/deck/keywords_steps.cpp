@@ -127,7 +127,10 @@ Block make_equilibrium() {
   b.key("loads", &Options::loads)
       .refers("load")
       .by_default("all loads of the deck")
-      .says("Loads ramped up in the last stage, which act from then on; an empty list: none.");
+      .says(
+          "All loads that act at the end of this step and from then on, ramped up in its last stage; others "
+          "that acted "
+          "before are ramped out. An empty list: none.");
   b.key("reset", &Options::reset).says("Start again from the reference configuration.");
   b.key("increments", &Options::increments)
       .at_least(1)

@@ -65,8 +65,10 @@ void add_linear(double m, int i, int j, Mat<12>& matrix) {
   matrix(j, i) += m / 6;
 }
 
-/// Mass of cubic bending in one plane: translation and rotation of the sections.
-Mat<4> cubic_mass(double mass_per_length, double rotary_inertia, double L) {
+/// Mass of bending in one plane: translation of the cubic, rotation of the sections. Where the beam shears
+/// the sections do not turn with the slope of the cubic: their rotation goes linearly between the ends, else
+/// the inertia of the shear angle would be counted, too, however short the elements.
+Mat<4> bending_mass(double mass_per_length, double rotary_inertia, bool shears, double L) {
   Mat<4> translation, rotation;
   translation << 156, 22 * L, 54, -13 * L,    //
       22 * L, 4 * L * L, 13 * L, -3 * L * L,  //
@@ -76,6 +78,11 @@ Mat<4> cubic_mass(double mass_per_length, double rotary_inertia, double L) {
       3 * L, 4 * L * L, -3 * L, -L * L,  //
       -36, -3 * L, 36, -3 * L,           //
       3 * L, -L * L, -3 * L, 4 * L * L;
+  if (shears) {
+    rotation.setZero();
+    rotation(1, 1) = rotation(3, 3) = 10 * L * L;
+    rotation(1, 3) = rotation(3, 1) = 5 * L * L;
+  }
   return mass_per_length * L / 420 * translation + rotary_inertia / (30 * L) * rotation;
 }
 
@@ -124,8 +131,11 @@ Mat<12> beam_local_mass(const BeamSection& section, double length) {
   add_linear(section.mass_per_length * length, 0, 6, mass);
   add_linear(polar * length, 3, 9, mass);
   // v' = +rotation about 3, w' = -rotation about 2
-  add_plane(cubic_mass(section.mass_per_length, section.rotary_inertia_3, length), {1, 5, 7, 11}, 1, mass);
-  add_plane(cubic_mass(section.mass_per_length, section.rotary_inertia_2, length), {2, 4, 8, 10}, -1, mass);
+  const auto plane = [&](double rotary_inertia, double shear_stiffness) {
+    return bending_mass(section.mass_per_length, rotary_inertia, shear_stiffness > 0, length);
+  };
+  add_plane(plane(section.rotary_inertia_3, section.shear_stiffness_2), {1, 5, 7, 11}, 1, mass);
+  add_plane(plane(section.rotary_inertia_2, section.shear_stiffness_3), {2, 4, 8, 10}, -1, mass);
   return mass;
 }
 

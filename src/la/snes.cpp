@@ -21,6 +21,8 @@ struct Context {
   DirectSolver& solver;
   std::exception_ptr error;
   bool singular = false;
+  int tangents = 0;       ///< formed so far
+  double stiffening = 0;  ///< added to the diagonal of the tangent at hand
   std::chrono::steady_clock::time_point solve_start{};
 
   template <class Action>
@@ -35,6 +37,20 @@ struct Context {
   }
 };
 
+/// On the way, not at the start, a tangent without resistance in some direction (between one cable that
+/// slackens and another not yet taut) is stiffened in all directions; the line search then finds where the
+/// energy stops falling. @return whether there are factors now
+bool stiffen(Context& context) {
+  constexpr double part = 1e-3;  // of the mean stiffness: a step some times too long along the free direction
+  if (context.tangents < 2) return false;
+  PetscInt n = 0;
+  check(MatGetSize(context.tangent.handle(), &n, nullptr), "MatGetSize");
+  const double mean = context.tangent.norm_of_diagonal() / std::sqrt(static_cast<double>(n));
+  context.stiffening = part * mean;
+  context.tangent.shift(context.stiffening);
+  return context.solver.factor(context.tangent);
+}
+
 PetscErrorCode form_residual(::SNES, ::Vec x, ::Vec f, void* data) {
   auto& context = *static_cast<Context*>(data);
   return context.guard([&] {
@@ -47,7 +63,9 @@ PetscErrorCode form_tangent(::SNES snes, ::Vec, ::Mat, ::Mat, void* data) {
   auto& context = *static_cast<Context*>(data);
   return context.guard([&] {
     context.callbacks.tangent(context.tangent);
-    if (context.solver.factor(context.tangent)) return;
+    ++context.tangents;
+    context.stiffening = 0;
+    if (context.solver.factor(context.tangent) || stiffen(context)) return;
     context.singular = true;
     check(SNESSetConvergedReason(snes, SNES_DIVERGED_LINEAR_SOLVE), "SNESSetConvergedReason");
     check(SNESSetJacobianDomainError(snes), "SNESSetJacobianDomainError");
@@ -101,10 +119,14 @@ PetscErrorCode search_line(::SNESLineSearch search, void* data) {
   return context.guard([&] {
     ::Vec x = nullptr, f = nullptr, y = nullptr, w = nullptr, g = nullptr;
     check(SNESLineSearchGetVecs(search, &x, &f, &y, &w, &g), "SNESLineSearchGetVecs");
-    if (inconsistent(context, y, f)) {
-      context.singular = true;
-      check(SNESLineSearchSetReason(search, SNES_LINESEARCH_FAILED_REDUCT), "SNESLineSearchSetReason");
-      return;
+    if (context.stiffening == 0 && inconsistent(context, y, f)) {
+      if (!stiffen(context)) {
+        context.singular = true;
+        check(SNESLineSearchSetReason(search, SNES_LINESEARCH_FAILED_REDUCT), "SNESLineSearchSetReason");
+        return;
+      }
+      Vector step(y);
+      context.solver.solve(Vector(f), step);
     }
     double evaluated = -1;
     const auto slope = [&](double t) {
@@ -114,7 +136,7 @@ PetscErrorCode search_line(::SNESLineSearch search, void* data) {
       evaluated = t;
       return residual.dot(Vector(y));
     };
-    const double t = context.callbacks.line_search(slope, Vector(f).dot(Vector(y)));
+    const double t = context.callbacks.line_search(slope, Vector(f).dot(Vector(y)), context.stiffening > 0);
     if (t != evaluated) slope(t);
     check(VecCopy(w, x), "VecCopy");
     check(VecCopy(g, f), "VecCopy");
@@ -192,6 +214,10 @@ SnesOutcome run_snes(const SnesCallbacks& callbacks, SymmetricMatrix& tangent, D
   check(code, "SNESSolve");
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   check(SNESGetConvergedReason(snes.get(), &reason), "SNESGetConvergedReason");
+  if (context.stiffening > 0) {  // who asks for the inertia means the tangent's
+    tangent.shift(-context.stiffening);
+    solver.factor(tangent);
+  }
   if (reason > 0) {
     callbacks.accept(x);
     return SnesOutcome::converged;

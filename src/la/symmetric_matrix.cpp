@@ -84,11 +84,15 @@ std::vector<long double> SymmetricMatrix::multiply_extended(const std::vector<do
   return y;
 }
 
+void SymmetricMatrix::shift(double value) {
+  check(MatShift(mat_, value), "MatShift");
+}
+
 SymmetricMatrix SymmetricMatrix::shifted(double value) const {
   SymmetricMatrix result;
   result.layout_ = layout_;
   check(MatDuplicate(mat_, MAT_COPY_VALUES, &result.mat_), "MatDuplicate");
-  check(MatShift(result.mat_, value), "MatShift");
+  result.shift(value);
   return result;
 }
 

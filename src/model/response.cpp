@@ -34,8 +34,9 @@ MembraneResult membrane_result(const Model& model, const State& state, const Mem
                                                     reference_nodes<N>(model, membrane.nodes),
                                                     displacements<N>(state, membrane.nodes), Want::force);
   Vec<2> principal = result.principal_cauchy;
-  if (result.state == element::MembraneState::slack) principal.setZero();
-  if (std::abs(principal[1]) < 1e-10 * std::abs(principal[0])) principal[1] = 0;  // rounding
+  const double stiffness = model.groups[membrane.group].membrane.tension_stiffness;
+  for (double& value : principal)  // rounding
+    if (std::abs(value) < std::max(1e-10 * std::abs(principal[0]), 1e-13 * stiffness)) value = 0;
   return {principal, result.state};
 }
 

@@ -278,8 +278,13 @@ void check_load_place(const model::Model& model, const model::LoadOptions& optio
     if (options.line_force && !lines && selected.cables.empty())
       refuse(name, "line_force", "beams, cables, bars or edges");
     if (options.line_moment && !lines) refuse(name, "line_moment", "beams or edges");
-    if (options.temperature_change && model.find_group(name) < 0)
-      refuse(name, "temperature_change", "group of elements");
+    if (!options.temperature_change) continue;
+    const int group = model.find_group(name);
+    if (group < 0) refuse(name, "temperature_change", "elements of its own");
+    const auto& g = model.groups[group];
+    if (g.thermal_expansion == 0 && g.membrane.thermal_expansion == 0 &&
+        g.membrane.thermal_expansion_2 == 0 && g.shell.thermal_expansion == 0)
+      refuse(name, "temperature_change", "thermal_expansion in its section or material");
   }
 }
 

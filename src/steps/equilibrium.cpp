@@ -48,16 +48,16 @@ Json vector_on_grid(const Vec3& v, double size) {
   return {on_grid(v[0], size), on_grid(v[1], size), on_grid(v[2], size)};
 }
 
-/// Force and moment of a support, with the sums of magnitudes whose rounding they carry.
+/// Force of a support and moment about its centre, with the sums of magnitudes whose rounding they carry.
 struct Reaction {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double force_size = 0, moment_size = 0;
 
-  void add(const Vec3& f, const Vec3& m) {
+  void add(const Vec3& lever, const Vec3& f, const Vec3& m) {
     force += f;
-    moment += m;
+    moment += lever.cross(f) + m;
     force_size += f.norm();
-    moment_size += m.norm();
+    moment_size += m.norm() + lever.norm() * f.norm();
   }
   /// Rounding of the larger reactions elsewhere is nothing of its own.
   Json json(double largest_force, double largest_moment) const {
@@ -72,6 +72,9 @@ struct Reaction {
 /// Mean displacement and rotation vector of the nodes of each name.
 Json monitors(const assembly::System& system, const std::vector<std::string>& names) {
   Json result = Json::object();
+  double farthest = 0, most = 0;
+  for (const auto& u : system.state().displacement) farthest = std::max(farthest, u.norm());
+  for (const auto& r : system.state().rotation) most = std::max(most, Eigen::AngleAxisd(r).angle());
   for (const auto& name : names) {
     const auto nodes = system.model().nodes_of({name});
     Vec3 u = Vec3::Zero(), r = Vec3::Zero();
@@ -80,7 +83,7 @@ Json monitors(const assembly::System& system, const std::vector<std::string>& na
       u += system.state().displacement[node] / static_cast<double>(nodes.size());
       r += turn.angle() * turn.axis() / static_cast<double>(nodes.size());
     }
-    result[name] = {{"displacement", vector_on_grid(u, 1e-3 * system.size())}, {"rotation", vector_on_grid(r, 1e-3)}};
+    result[name] = {{"displacement", vector_on_grid(u, farthest)}, {"rotation", vector_on_grid(r, most)}};
   }
   return result;
 }
@@ -124,11 +127,19 @@ Json reactions_json(const assembly::System& system, const assembly::Boundary& bo
                     const assembly::System::NodalForces& reactions) {
   std::map<int, std::array<Claims, 2>> claims;  // by node: of forces, of moments
   std::vector<std::pair<std::string, Reaction>> list;
+  const auto positions = model::positions(system.model(), system.state());
+  const auto centre_of = [&](const auto& nodes) {
+    Vec3 sum = Vec3::Zero();
+    for (const int node : nodes) sum += positions[node];
+    return Vec3(sum / std::max<double>(1, static_cast<double>(nodes.size())));
+  };
   for (const auto& support : boundary.supports) {
     Reaction sum;
+    const Vec3 centre = centre_of(support.nodes);
     for (const int node : support.nodes) {
       auto& [of_force, of_moment] = claims[node];
-      sum.add(of_force.take(support.axes, support.fixed.data(), reactions.force[node]),
+      sum.add(positions[node] - centre,
+              of_force.take(support.axes, support.fixed.data(), reactions.force[node]),
               of_moment.take(support.axes, support.fixed.data() + 3, reactions.moment[node]));
     }
     list.emplace_back(support.name, sum);
@@ -140,7 +151,8 @@ Json reactions_json(const assembly::System& system, const assembly::Boundary& bo
     if (spring.grounded()) sprung[model.groups[spring.group].name].insert(spring.nodes[0]);
   for (const auto& [name, nodes] : sprung) {
     Reaction sum;
-    for (const int node : nodes) sum.add(ground.force[node], ground.moment[node]);
+    const Vec3 centre = centre_of(nodes);
+    for (const int node : nodes) sum.add(positions[node] - centre, ground.force[node], ground.moment[node]);
     list.emplace_back(name, sum);
   }
   double force = 0, moment = 0;
@@ -154,8 +166,9 @@ Json reactions_json(const assembly::System& system, const assembly::Boundary& bo
   return result;
 }
 
-/// Loads and reactions together, over the sum of their magnitudes: zero in equilibrium. Linear constraints
-/// and cyclic pairs carry forces of their own, so that nothing is said where there are any.
+/// Loads and reactions together, over the sum of their magnitudes: zero in equilibrium, as is what the
+/// rounding of the stiffest elements leaves. Linear constraints and cyclic pairs carry forces of their own,
+/// so that nothing is said where there are any.
 Json balance(const assembly::System& system, const assembly::System::NodalForces& reactions) {
   const auto& model = system.model();
   if (!model.constraints.empty() || !model.cyclic_pairs.empty()) return nullptr;
@@ -170,10 +183,13 @@ Json balance(const assembly::System& system, const assembly::System::NodalForces
     loads.add(positions[i], applied.force[i], applied.moment[i]);
     reach = std::max(reach, positions[i].norm());
   }
-  const auto part = [](double value, double of) { return above_rounding(of > 0 ? value / of : 0, 1e-9); };
+  const double rounding = system.rounding_force();
+  const auto part = [](double value, double of, double floor) {
+    return above_rounding(value > floor ? value / of : 0, 1e-9);
+  };
   return {{"applied_force", triple(loads.force)},
-          {"force", part(all.force.norm(), all.size + all.moment_size / reach)},
-          {"moment", part(all.moment.norm(), all.moment_size + all.size * reach)}};
+          {"force", part(all.force.norm(), all.size + all.moment_size / reach, rounding)},
+          {"moment", part(all.moment.norm(), all.moment_size + all.size * reach, rounding * reach)}};
 }
 
 /// One stage: returns its entry; `reached` says whether lambda came to 1.

@@ -69,6 +69,23 @@ TEST(System, NeedsNoIterationWhereItIsInEquilibrium) {
   EXPECT_LT((system.reactions().force[0] - Vec3(-50, 0, 0)).norm(), 1e-10);
 }
 
+/// Two cables in a line, the left one 1 mm short, the right one 1 cm too long: pushed to the left the carriage
+/// crosses the gap in which neither pulls.
+TEST(System, CrossesTheGapBetweenTwoSlackCables) {
+  for (const double force : {-40.0, -5.0, 5.0}) {
+    model::Model model;
+    model.nodes = {{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}};
+    const int cord = add_cable_group(model, "cord", 1000);
+    add_cable(model, cord, 0, 1, 1 / 0.999 - 1);
+    add_cable(model, cord, 1, 2, 1 / 1.01 - 1);
+    System system(model);
+    solve(system, {{support({0, 2}), support({1}, {false, true, true, false, false, false})},
+                   {load(1, {force, 0, 0})}});
+    const double left = -0.001 + 0.999 * force / 1000, right = -0.01 + 1.01 * force / 1000;
+    EXPECT_NEAR(system.state().displacement[1].x(), force > 0 ? left : right, 1e-12) << force;
+  }
+}
+
 /// A line of two different cables: 1 m at 20 N and 2 m at 10 N, E A = 1000 N, with the node between them
 /// held.
 model::Model uneven_cables() {

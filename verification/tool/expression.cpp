@@ -122,6 +122,7 @@ class Parser {
   }
 
   Values combine(const Values& a, const Values& b, Binary operation) const {
+    if (a.empty() || b.empty()) fail("nothing fits the reference: an empty list");
     if (a.size() != b.size() && a.size() != 1 && b.size() != 1)
       fail(fmt::format("lists of {} and {} entries", a.size(), b.size()));
     Values result(std::max(a.size(), b.size()));

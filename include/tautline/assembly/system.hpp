@@ -68,6 +68,8 @@ class System : public analysis::PathProblem {
   const Kinematics& kinematics() const noexcept { return kinematics_; }
   /// Diagonal of the box around the reference nodes [m].
   double size() const noexcept { return size_; }
+  /// Force that the rounding of the stiffest elements may leave out of balance [N].
+  double rounding_force() const noexcept { return rounding_force_; }
   int n_dofs() const noexcept { return 3 * map_.layout.total; }
   double assembly_seconds() const noexcept { return assembly_seconds_; }
 

@@ -76,9 +76,10 @@ BeamResponse evaluate_beam(const BeamSection& section, const BeamGeometry& geome
 double beam_second_variation(const BeamSection& section, const BeamGeometry& geometry,
                              const BeamMotion& motion, const Vec<12>& velocity);
 
-/// @brief Consistent mass matrix (Euler-Bernoulli with rotary inertia) in the global frame [kg, kg m, kg
-/// m^2].
+/// @brief Consistent mass matrix with rotary inertia in the global frame [kg, kg m, kg m^2].
 ///
+/// Translations by the cubic of Euler-Bernoulli; sections turn with its slope, or, where the beam shears,
+/// linearly from end to end.
 /// Order (u1, spin1, u2, spin2); `frame` as in BeamResponse::frame.
 Mat<12> beam_mass(const BeamSection& section, double length, const Mat3& frame);
 

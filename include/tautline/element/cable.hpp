@@ -23,7 +23,7 @@ struct CableResponse {
   Vec<6> force;        ///< dW/du, order (u1x,u1y,u1z,u2x,...) [N]
   Mat<6> tangent;      ///< d force / du [N/m]; left untouched unless wanted
   double tension = 0;  ///< EA <eps> [N]; negative only in a bar
-  bool slack = false;  ///< eps <= 0; never in a bar
+  bool slack = false;  ///< eps < 0; never in a bar
 };
 
 /// @brief Energy, internal force, tangent and tension of a cable.

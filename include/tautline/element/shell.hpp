@@ -43,9 +43,9 @@ struct ShellForces {
 
 template <int N>
 struct ShellResponse {
-  double energy = 0;    ///< [J]
-  Vec<6 * N> force;     ///< internal force, order (f1, m1, f2, m2, ...), moments conjugate to spatial spins
-  Mat<6 * N> tangent;   ///< symmetrised, see docs/theory/conventions.md; untouched unless wanted
+  double energy = 0;   ///< [J]
+  Vec<6 * N> force;    ///< internal force, order (f1, m1, f2, m2, ...), moments conjugate to spatial spins
+  Mat<6 * N> tangent;  ///< symmetrised, see docs/theory/conventions.md; untouched unless wanted
   ShellForces forces;
 };
 

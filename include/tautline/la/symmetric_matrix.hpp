@@ -37,6 +37,8 @@ class SymmetricMatrix {
   std::vector<long double> multiply_extended(const std::vector<double>& x) const;
   /// y = A x
   void multiply(const Vector& x, Vector& y) const;
+  /// Adds `value` to the diagonal.
+  void shift(double value);
   /// A copy with `value` added to the diagonal.
   SymmetricMatrix shifted(double value) const;
   /// A copy with `factor` times `other` added, whose pattern must lie within this one's.

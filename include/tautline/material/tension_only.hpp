@@ -11,7 +11,7 @@ struct AxialResponse {
   double energy_per_length = 0;  ///< per unstressed length [N]
   double tension = 0;            ///< never negative in a cable [N]
   double slope = 0;              ///< d tension / d engineering strain [N]
-  bool slack = true;             ///< engineering strain <= 0; never in a bar
+  bool slack = true;             ///< engineering strain < 0; never in a bar
 };
 
 /// @brief sigma = E eps for both signs.
@@ -24,9 +24,10 @@ constexpr AxialResponse linear_elastic(double axial_stiffness, double engineerin
 
 /// @brief Tension-only bilinear law: sigma = E eps for eps > 0, else 0.
 ///
-/// At eps = 0 the slope is that of the slack side. Parameters as above. Source: Belov, eq. 3.10.
+/// At eps = 0, where a cable is just as long as its span, the slope is that of the taut side. Parameters as
+/// above. Source: Belov, eq. 3.10.
 constexpr AxialResponse tension_only(double axial_stiffness, double engineering_strain) {
-  return engineering_strain <= 0 ? AxialResponse{} : linear_elastic(axial_stiffness, engineering_strain);
+  return engineering_strain < 0 ? AxialResponse{} : linear_elastic(axial_stiffness, engineering_strain);
 }
 
 /// The law of a cable, tension only, or of a bar. Parameters as above.
