@@ -326,6 +326,9 @@ void draw_tensions(Context& context, const model::Response& response) {
   std::vector<int> all(model.cables.size());
   std::iota(all.begin(), all.end(), 0);
   std::vector<std::array<int, 2>> frame;
+  for (const auto& shell : model.shells)
+    for (int k = 0, n = shell.nodes.size(); k < n; ++k)
+      frame.push_back({shell.nodes[k], shell.nodes[(k + 1) % n]});
   for (const auto& beam : model.beams) frame.push_back(beam.nodes);
   auto view = tension_view(context, response, all, frame);
   view.title = "Tensions of all cables";
@@ -339,10 +342,46 @@ void draw_tensions(Context& context, const model::Response& response) {
   context.draw("net_tensions", "Tensions of the front net, seen along the axis", view);
 }
 
+/// The displaced structure coloured by how far it went, drawn to a visible scale; light grey: before.
+void draw_displacements(Context& context) {
+  const auto& model = context.system().model();
+  const auto& state = context.system().state();
+  double most = 0;
+  for (const auto& u : state.displacement) most = std::max(most, u.norm());
+  if (most == 0) return;
+  const double size = context.system().size(), natural = most / size;
+  const double scale = natural >= 0.01 ? 1 : std::pow(10, std::floor(std::log10(0.05 / natural)));
+  output::ViewLayer faces, lines, before;
+  before.points = model.nodes;
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    faces.points.push_back(model.nodes[i] + scale * state.displacement[i]);
+    faces.point_scalars.push_back(1e3 * state.displacement[i].norm());
+  }
+  lines.points = faces.points;
+  lines.point_scalars = faces.point_scalars;
+  add_triangles(model.membranes, faces);
+  add_triangles(model.shells, faces);
+  for (const auto& cable : model.cables) lines.lines.push_back(cable.nodes);
+  for (const auto& beam : model.beams) lines.lines.push_back(beam.nodes);
+  before.lines = lines.lines;
+  before.line_width = 1;
+  before.colour = Vec3(0.75, 0.75, 0.78);
+  lines.line_width = 2.5;
+  output::View view;
+  view.title =
+      scale == 1 ? std::string("Displacements") : fmt::format("Displacements, {:g} times as large", scale);
+  view.subtitle = fmt::format("largest {:.4g} mm", 1e3 * most);
+  view.scalar_title = "displacement [mm]";
+  view.layers = {std::move(before), std::move(faces), std::move(lines)};
+  context.draw("displacements",
+               fmt::format("Displacements, largest {:.4g} mm; light grey: before", 1e3 * most), view);
+}
+
 }  // namespace
 
 void draw_state(Context& context, const model::Response& response) {
   if (!context.draws()) return;
+  if (!context.surface) draw_displacements(context);
   if (context.surface) draw_deviation(context);
   if (!context.system().model().cables.empty()) draw_tensions(context, response);
 }
