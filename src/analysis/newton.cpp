@@ -107,13 +107,16 @@ class Judge {
 
  private:
   /// Forces in balance and, after the start, an increment that has died out; or an increment that has died
-  /// out with forces at the level that round-off of the stiffest element leaves, as where a mechanism moves
-  /// without force.
+  /// out with forces that fall no more, at the level that round-off of the stiffest element leaves, as where
+  /// a mechanism moves without force.
   bool settled(const NewtonIteration& record, double residual, int iteration) {
     const bool balanced = residual <= options_.force_tolerance;
     const bool still = iteration > 0 && record.increment <= options_.increment_tolerance;
     const auto& norms = record.norms;
-    const bool tiny = norms.force <= norms.rounding_force && norms.moment <= norms.rounding_moment;
+    const bool tiny = norms.force <= norms.rounding_force && norms.moment <= norms.rounding_moment &&
+                      norms.force >= stagnation * last_force_ && norms.moment >= stagnation * last_moment_;
+    last_force_ = norms.force;
+    last_moment_ = norms.moment;
     const bool at_rounding =
         iteration > 0 && ((record.increment <= 1e-14 && residual <= 1e3 * options_.force_tolerance) ||
                           (record.increment <= 1e-9 && tiny));
@@ -126,9 +129,11 @@ class Judge {
     return true;
   }
 
+  static constexpr double stagnation = 0.1;  ///< a residual that falls less than this is at its end
   NonlinearProblem& problem_;
   const NewtonOptions& options_;
   const IterationCallback& callback_;
+  double last_force_ = 0, last_moment_ = 0;
 };
 
 }  // namespace

@@ -69,8 +69,11 @@ void System::add_element_loads(const Load& load, Acting& to) const {
     if (!load.line_force.isZero(0) || !load.line_moment.isZero(0)) {
       for (const int i : selected.cables)
         add_line(model_, model_.cables[i].nodes[0], model_.cables[i].nodes[1], false, load, to);
-      for (const int i : selected.beams)
-        add_line(model_, model_.beams[i].nodes[0], model_.beams[i].nodes[1], true, load, to);
+      for (const int i : selected.beams) {
+        const auto& [a, b] = model_.beams[i].nodes;
+        add_line(model_, a, b, true, load, to);
+        to.line[static_cast<std::size_t>(i)] += load.line_force;
+      }
       for (const auto& [a, b] : selected.edges) add_line(model_, a, b, false, load, to);
     }
     for (const int i : selected.membranes) {
@@ -89,6 +92,7 @@ void System::add_element_loads(const Load& load, Acting& to) const {
 Acting System::acting(const Boundary& boundary) const {
   Acting result{Points(model_.nodes.size(), Vec3::Zero()),
                 Points(model_.nodes.size(), Vec3::Zero()),
+                Points(model_.beams.size(), Vec3::Zero()),
                 std::vector<double>(model_.membranes.size() + model_.shells.size(), 0.0),
                 std::vector<double>(model_.groups.size(), 0.0),
                 {},
@@ -102,6 +106,8 @@ Acting System::acting(const Boundary& boundary) const {
     add_element_loads(load, result);
     result.acceleration += load.acceleration;
   }
+  for (std::size_t i = 0; i < model_.beams.size(); ++i)
+    result.line[i] += beam_section(model_, model_.beams[i]).mass_per_length * result.acceleration;
   if (!result.acceleration.isZero(0))
     for_each_kind(model_, [&](const auto& elements) {
       for (const auto& element : elements) add_weight(model_, state_, element, result.acceleration, result);

@@ -65,7 +65,12 @@ Neighbourhood around(const model::Model& model, int node) {
   return n;
 }
 
-std::string likely_cause(const model::Model& model, int node) {
+std::string likely_cause(const model::Model& model, int node, bool rotation) {
+  for (const auto& link : model.links)
+    if (rotation && link.follower == node)
+      return "a hinge or release leaves this rotation free and nothing else holds it: release less, or hold "
+             "it at "
+             "the other end";
   const Neighbourhood n = around(model, node);
   if (n.beams || n.shells)
     return "the supports leave the frame free to move: hold it in more directions, or at more nodes";
@@ -105,10 +110,10 @@ std::optional<Mechanism> find_mechanism(System& system, analysis::Workspace& wor
     const Vec3& at = model.nodes[node];
     names.push_back(fmt::format("{} at ({:.4g}, {:.4g}, {:.4g})", node + 1, at.x(), at.y(), at.z()));
   }
-  mechanism.text = fmt::format("the structure can move without resistance: node{} {} {} {}; {}",
-                               names.size() == 1 ? "" : "s", join(names, ", "),
-                               mechanism.rotation ? "turning about" : "moving along",
-                               direction_name(mechanism.direction), likely_cause(model, first));
+  mechanism.text = fmt::format(
+      "the structure can move without resistance: node{} {} {} {}; {}", names.size() == 1 ? "" : "s",
+      join(names, ", "), mechanism.rotation ? "turning about" : "moving along",
+      direction_name(mechanism.direction), likely_cause(model, first, mechanism.rotation));
   return mechanism;
 }
 

@@ -100,9 +100,13 @@ Acting Acting::blended(const Acting& other, double t) const {
     for (std::size_t i = 0; i < a.size(); ++i) result[i] = (1 - t) * a[i] + t * b[i];
     return result;
   };
-  return {blend(force, other.force),       blend(moment, other.moment),
-          blend(pressure, other.pressure), blend(temperature, other.temperature),
-          blend(strain, other.strain),     (1 - t) * acceleration + t * other.acceleration};
+  return {blend(force, other.force),
+          blend(moment, other.moment),
+          blend(line, other.line),
+          blend(pressure, other.pressure),
+          blend(temperature, other.temperature),
+          blend(strain, other.strain),
+          (1 - t) * acceleration + t * other.acceleration};
 }
 
 System::System(model::Model model)
@@ -136,11 +140,13 @@ System::System(model::Model model)
 }
 
 void System::find_rounding() {
-  constexpr double relative = 1e-13;  // some hundred units in the last place
-  const auto note = [](double& to, double value) { to = std::max(to, relative * value); };
+  constexpr double of_lines = 5e-15, of_facets = 1e-13;  // some ten and some hundred units in the last place
+  double relative = of_lines;
+  const auto note = [&](double& to, double value) { to = std::max(to, relative * value); };
   for (const auto& group : model_.groups) {
     if (model::is_cable_like(group.kind)) note(rounding_force_, group.cable.axial_stiffness);
     if (group.kind == model::ElementKind::beam) note(rounding_force_, group.beam.axial_stiffness);
+    relative = of_facets;
     if (group.kind == model::ElementKind::membrane)
       note(rounding_force_, group.membrane.tension_stiffness * size_);
     if (group.kind == model::ElementKind::shell) {
@@ -148,6 +154,7 @@ void System::find_rounding() {
       note(rounding_force_, stretching * size_);
       note(rounding_moment_, stretching * group.shell.thickness * size_);
     }
+    relative = of_lines;
   }
   for (const auto& beam : model_.beams) {
     const auto& section = model_.groups[beam.group].beam;
@@ -234,6 +241,7 @@ void System::apply(double lambda) {
   for (std::size_t i = 0; i < model_.cables.size(); ++i) model_.cables[i].initial_strain = now_.strain[i];
   for (std::size_t g = 0; g < model_.groups.size(); ++g)
     model_.groups[g].temperature_change = now_.temperature[g];
+  for (std::size_t i = 0; i < model_.beams.size(); ++i) model_.beams[i].line_load = now_.line[i];
   model_.acceleration = now_.acceleration;
 }
 

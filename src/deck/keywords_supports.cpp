@@ -126,10 +126,15 @@ Block make_load() {
   b.key("moment", &Options::moment).in("N m").by_default("[0, 0, 0]").says("Moment on each node.");
   b.key("displacement", &Options::displacement)
       .in("m")
-      .says("How far each node is moved; a support must hold it in every direction that is not 0.");
+      .says(
+          "How far each node is moved from its place in the reference configuration; a support must hold it "
+          "in every "
+          "direction that is not 0. It stays there until another motion.");
   b.key("rotation", &Options::rotation)
       .in("rad")
-      .says("Rotation vector by which each node is turned, any number of turns; a support must hold it.");
+      .says(
+          "Rotation vector by which each node is turned from its reference, any number of turns; a support "
+          "must hold it.");
   b.key("line_force", &Options::line_force)
       .in("N/m")
       .says("Force per drawn length of beams, cables, bars and edges.");

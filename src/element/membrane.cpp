@@ -216,7 +216,11 @@ Mat<12> mass_of(double mass_per_area, const Mat<3, 4>& x_ref) {
 
 MembraneLaw membrane_law(const MembraneSection& section, double angle, const Vec3& prestress,
                          double temperature_change) {
-  const double expansion = section.thermal_expansion * temperature_change;
+  const auto green = [&](double expansion) {  // free growth as a Green-Lagrange strain
+    const double growth = expansion * temperature_change;
+    return growth + growth * growth / 2;
+  };
+  const double expansion = green(section.thermal_expansion);
   const bool wrinkling = section.wrinkling && section.tension_stiffness > 0;
   if (!section.orthotropic())
     return {material::plane_stress_stiffness(section.tension_stiffness, section.poisson_ratio), prestress,
@@ -224,7 +228,7 @@ MembraneLaw membrane_law(const MembraneSection& section, double angle, const Vec
   const Mat3 D = material::plane_stress_stiffness({section.tension_stiffness, section.tension_stiffness_2,
                                                    section.poisson_ratio, section.shear_stiffness});
   const Mat3 to_material_axes = material::strain_rotation(angle);
-  const Vec3 free_strain(expansion, section.thermal_expansion_2 * temperature_change, 0);
+  const Vec3 free_strain(expansion, green(section.thermal_expansion_2), 0);
   const Mat3 turned = to_material_axes.transpose() * D * to_material_axes;
   return {(turned + turned.transpose()) / 2, prestress, material::strain_rotation(-angle) * free_strain,
           wrinkling};

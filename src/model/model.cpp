@@ -171,13 +171,13 @@ std::map<std::string, double> mass_by_group(const Model& model) {
 
 namespace {
 
-/// Normal of a facet at its corner `i`.
+/// Normal of a facet at its corner `i` with the weight that makes the sum over corners exact on a sphere (Max
+/// 1999, Weights for computing vertex normals from facet normals, J. Graphics Tools 4(2), 1-6).
 Vec3 corner_normal(const Model& model, const FacetNodes& nodes, int i) {
   const int n = nodes.size();
   const Vec3& here = model.nodes[nodes[i]];
-  return (model.nodes[nodes[(i + 1) % n]] - here)
-      .cross(model.nodes[nodes[(i + n - 1) % n]] - here)
-      .normalized();
+  const Vec3 out = model.nodes[nodes[(i + 1) % n]] - here, in = model.nodes[nodes[(i + n - 1) % n]] - here;
+  return out.cross(in) / (out.squaredNorm() * in.squaredNorm());
 }
 
 /// Normals of the planes of symmetry that supports make at each node: the displacement along one direction
@@ -213,10 +213,10 @@ void find_directors(Model& model) {
       at_node[shell.nodes[i]].emplace_back(shell.group, corner_normal(model, shell.nodes, i));
   for (auto& shell : model.shells)
     for (int i = 0; i < shell.nodes.size(); ++i) {
-      const Vec3 own = corner_normal(model, shell.nodes, i);
+      const Vec3 own = corner_normal(model, shell.nodes, i).normalized();
       Vec3 sum = Vec3::Zero();
       for (const auto& [group, normal] : at_node[shell.nodes[i]])
-        if (group == shell.group && std::abs(normal.dot(own)) >= smooth)
+        if (group == shell.group && std::abs(normal.dot(own)) >= smooth * normal.norm())
           sum += normal.dot(own) < 0 ? Vec3(-normal) : normal;
       shell.director[static_cast<std::size_t>(i)] =
           mirrored(sum.normalized(), planes[static_cast<std::size_t>(shell.nodes[i])]);

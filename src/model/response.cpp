@@ -28,6 +28,20 @@ CableResult cable_result(const Model& model, const State& state, const Cable& ca
   return {length, result.tension, result.slack};
 }
 
+/// What the nodes carry for a load along the beam is no force in its sections: the end forces are those of
+/// the element less its share of that load.
+void take_off_line_load(element::BeamForces& forces, const Mat3& frame, const Model& model,
+                        const Beam& beam) {
+  if (beam.line_load.isZero(0)) return;
+  const Vec3 way = model.nodes[beam.nodes[1]] - model.nodes[beam.nodes[0]];
+  const Vec3 half = frame.transpose() * beam.line_load * (way.norm() / 2);
+  const Vec3 end_moment = frame.transpose() * way.cross(beam.line_load) * (way.norm() / 12);
+  forces.axial -= half[0];
+  forces.shear -= half.tail<2>();
+  forces.end_moment.col(0) -= end_moment;
+  forces.end_moment.col(1) += end_moment;
+}
+
 template <int N>
 MembraneResult membrane_result(const Model& model, const State& state, const Membrane& membrane) {
   const auto result = element::evaluate_membrane<N>(membrane_law<N>(model, membrane),
@@ -57,6 +71,7 @@ Response evaluate_response(const Model& model, const State& state) {
     const auto result = element::evaluate_beam(beam_section(model, beam), beam_geometry(model, beam),
                                                beam_motion(state, beam), Want::force);
     response.beams.push_back(result.forces);
+    take_off_line_load(response.beams.back(), result.frame, model, beam);
     response.beam_frames.push_back(result.frame);
   }
   for (const auto& membrane : model.membranes)

@@ -113,12 +113,36 @@ class Subdivider {
     return result;
   }
 
+  /// Nodes of a beam on arms from both ends of a facet side: its parts hang on the side's new nodes by arms
+  /// of their own, as a rib on a plate. Empty if it is no such beam.
+  std::vector<int> beside_side(int a, int b) {
+    const auto leader = [&](int node) {
+      for (const auto& link : old_.links)
+        if (link.group < 0 && link.follower == node) return link.leader;
+      return node;
+    };
+    const int la = leader(a), lb = leader(b);
+    const auto side = sides_.find(edge_of(la, lb));
+    if ((la == a && lb == b) || side == sides_.end()) return {};
+    const auto on_side = along(la, lb, side->second);
+    std::vector<int> nodes{a};
+    const auto n = static_cast<int>(on_side.size()) - 1;
+    for (int k = 1; k < n; ++k) {
+      const double t = double(k) / n;
+      nodes.push_back(add_node((1 - t) * old_.nodes[a] + t * old_.nodes[b]));
+      new_.links.push_back({on_side[k], nodes.back(), false, {}, -1});
+    }
+    nodes.push_back(b);
+    return nodes;
+  }
+
   template <class Line>
   void split_lines(const std::vector<Line>& from, std::vector<Line>& to,
                    std::vector<std::vector<int>>& children) {
     for (std::size_t i = 0; i < from.size(); ++i) {
       const auto& [a, b] = from[i].nodes;
-      const auto nodes = along(a, b, parts_of(edge_of(a, b), old_.groups[from[i].group]));
+      auto nodes = beside_side(a, b);
+      if (nodes.empty()) nodes = along(a, b, parts_of(edge_of(a, b), old_.groups[from[i].group]));
       children.emplace_back();
       for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
         children.back().push_back(static_cast<int>(to.size()));

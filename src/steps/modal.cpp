@@ -122,6 +122,9 @@ Json run_step(Context& context, const ModalOptions& options) {
       fmt::format("{} | {} modes of {} unknowns", context.step_name, options.modes, system.n_dofs()));
   const auto pairs = la::solve_vibration(workspace.tangent, mass, options.modes);
   workspace.solver.add(pairs.timings);
+  // A rigid motion of a free structure has the eigenvalue zero, up to the rounding of the stiffness.
+  const double rounding =
+      1e-14 * workspace.tangent.norm_of_diagonal() / std::max(mass.norm_of_diagonal(), 1e-300);
   Json entry;
   entry["status"] = "done";
   entry["frequencies"] = Json::array();
@@ -130,7 +133,8 @@ Json run_step(Context& context, const ModalOptions& options) {
   auto grid = field_grid(context, model::evaluate_response(system.model(), system.state()));
   grid.point_fields.clear();
   for (int i = 0; i < options.modes; ++i) {
-    const double eigenvalue = system.second_variation(pairs.vectors[i]);
+    double eigenvalue = system.second_variation(pairs.vectors[i]);
+    if (std::abs(eigenvalue) <= rounding) eigenvalue = 0;
     const double frequency =
         std::copysign(std::sqrt(std::abs(eigenvalue)), eigenvalue) / (2 * std::numbers::pi);
     entry["frequencies"].push_back(frequency);
@@ -140,7 +144,7 @@ Json run_step(Context& context, const ModalOptions& options) {
     for (const auto& v : shape) field.values.insert(field.values.end(), v.begin(), v.end());
     grid.point_fields.push_back(std::move(field));
     if (i < 3 && context.draws()) draw_mode(context, shape, i + 1, frequency);
-    if (eigenvalue < 0) {
+    if (eigenvalue < -rounding) {
       entry["status"] = "not_converged";
       entry["reason"] =
           fmt::format("mode {} has a negative eigenvalue {:.3e}: the state is unstable", i + 1, eigenvalue);

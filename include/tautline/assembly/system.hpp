@@ -34,6 +34,7 @@ struct OutOfBalance {
 /// What acts on the model at one end of a stage, node by node, facet by facet, group by group.
 struct Acting {
   Points force, moment;              ///< dead nodal loads, of all kinds together [N], [N m]
+  Points line;                       ///< distributed dead load of each beam, in `force` already [N/m]
   std::vector<double> pressure;      ///< on membranes, then shells [Pa]
   std::vector<double> temperature;   ///< change of each group [K]
   std::vector<double> strain;        ///< initial strain of each cable

@@ -93,7 +93,8 @@ element::ShellGeometry<N> shell_geometry(const Model& model, const Shell& shell)
   geometry.x_ref = reference_nodes<N>(model, shell.nodes);
   for (int i = 0; i < N; ++i) geometry.director.col(i) = shell.director[static_cast<std::size_t>(i)];
   geometry.prestress = shell.prestress;
-  geometry.free_strain = group.shell.thermal_expansion * group.temperature_change;
+  const double growth = group.shell.thermal_expansion * group.temperature_change;
+  geometry.free_strain = growth + growth * growth / 2;  // as a Green-Lagrange strain
   return geometry;
 }
 

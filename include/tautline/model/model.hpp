@@ -75,6 +75,7 @@ struct Beam {
   Mat3 frame = Mat3::Identity();  ///< reference frame, columns local axes
   int parent = 0;
   std::array<double, 2> span{0, 1};  ///< place of its ends along the beam before subdivision, 0 to 1
+  Vec3 line_load = Vec3::Zero();     ///< distributed dead load at present, weight included [N/m]
 };
 
 struct Membrane {
