@@ -1,0 +1,23 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace tautline::rod {
+
+enum class SolveStatus { converged, too_many_iterations, diverging, singular };
+
+/// How a solve went, with a sentence that holds the numbers that ended it.
+struct SolveSummary {
+  SolveStatus status = SolveStatus::diverging;
+  std::string reason;
+  std::vector<double> increments;  ///< largest change of an unknown, relative to its size, by iteration
+  /// Successive approximation: by what the last increments shrank from one to the next; from 1 on it
+  /// diverges. Zero for Newton's method.
+  double contraction_rate = 0;
+  int steps = 1;             ///< in turning the root; 1 for a solve in one go
+  int total_iterations = 0;  ///< of all steps, failed ones too
+  bool converged() const { return status == SolveStatus::converged; }
+  int iterations() const { return static_cast<int>(increments.size()); }
+};
+
+}  // namespace tautline::rod

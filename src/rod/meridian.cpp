@@ -1,0 +1,149 @@
+#include <tautline/rod/meridian.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <tautline/core/error.hpp>
+
+namespace tautline::rod {
+
+namespace {
+
+/// Gauss-Legendre rule of five points on [a, b].
+template <class F>
+double gauss(const F& f, double a, double b) {
+  static constexpr double x[] = {0.538469310105683091, 0.906179845938663993},
+                          w[] = {0.568888888888888889, 0.478628670499366468, 0.236926885056189088};
+  const double middle = (a + b) / 2, half = (b - a) / 2;
+  double sum = w[0] * f(middle);
+  for (int i = 0; i < 2; ++i) sum += w[i + 1] * (f(middle - half * x[i]) + f(middle + half * x[i]));
+  return half * sum;
+}
+
+/// Halves [a, b] until the rule agrees with itself to 1e-13 of its value.
+template <class F>
+double integrate(const F& f, double a, double b, int depth = 0) {
+  const double middle = (a + b) / 2, whole = gauss(f, a, b),
+               halves = gauss(f, a, middle) + gauss(f, middle, b);
+  if (std::abs(whole - halves) <= 1e-13 * std::abs(halves) || depth == 20) return halves;
+  return integrate(f, a, middle, depth + 1) + integrate(f, middle, b, depth + 1);
+}
+
+double sign(double value) {
+  return value > 0 ? 1 : value < 0 ? -1 : 0;
+}
+
+/// Slope at an end of the table from three points, limited so that the cubic stays monotone.
+double end_slope(double h0, double h1, double secant_0, double secant_1) {
+  const double slope = ((2 * h0 + h1) * secant_0 - h0 * secant_1) / (h0 + h1);
+  if (sign(slope) != sign(secant_0)) return 0;
+  if (sign(secant_0) != sign(secant_1) && std::abs(slope) > 3 * std::abs(secant_0)) return 3 * secant_0;
+  return slope;
+}
+
+/// Slopes at the points: weighted harmonic means of the neighbouring secants, zero at extrema (Fritsch &
+/// Butland 1984), which satisfy the condition of Fritsch & Carlson.
+std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vector<double>& y) {
+  const std::size_t n = x.size();
+  std::vector<double> h, secant, slope(n);
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    h.push_back(x[i + 1] - x[i]);
+    secant.push_back((y[i + 1] - y[i]) / h[i]);
+  }
+  if (n == 2) return {secant[0], secant[0]};
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    if (secant[i - 1] * secant[i] <= 0) continue;
+    const double w1 = 2 * h[i] + h[i - 1], w2 = h[i] + 2 * h[i - 1];
+    slope[i] = (w1 + w2) / (w1 / secant[i - 1] + w2 / secant[i]);
+  }
+  slope[0] = end_slope(h[0], h[1], secant[0], secant[1]);
+  slope[n - 1] = end_slope(h[n - 2], h[n - 3], secant[n - 2], secant[n - 3]);
+  return slope;
+}
+
+/// Cubic Hermite pieces, straight lines outside.
+struct Table {
+  std::vector<double> x, y, slope;
+
+  Jet at(double at) const {
+    if (at < x.front()) return {y.front() + slope.front() * (at - x.front()), slope.front(), 0};
+    if (at > x.back()) return {y.back() + slope.back() * (at - x.back()), slope.back(), 0};
+    const auto above = std::upper_bound(x.begin() + 1, x.end() - 1, at);
+    const std::size_t i = above - x.begin() - 1;
+    const double h = x[i + 1] - x[i], t = at - x[i], secant = (y[i + 1] - y[i]) / h;
+    const double c2 = (3 * secant - 2 * slope[i] - slope[i + 1]) / h;
+    const double c3 = (slope[i] + slope[i + 1] - 2 * secant) / (h * h);
+    return {y[i] + t * (slope[i] + t * (c2 + t * c3)), slope[i] + t * (2 * c2 + t * 3 * c3),
+            2 * c2 + 6 * c3 * t};
+  }
+};
+
+}  // namespace
+
+Meridian::Meridian(Function f, std::vector<double> breaks) : f_(std::move(f)), breaks_(std::move(breaks)) {}
+
+Meridian Meridian::parabola(double coefficient) {
+  return Meridian([coefficient](double x) {
+    return Jet{coefficient * x * x, 2 * coefficient * x, 2 * coefficient};
+  });
+}
+
+Meridian Meridian::table(std::vector<double> x, std::vector<double> y) {
+  if (x.size() < 2 || x.size() != y.size())
+    throw ModelError(fmt::format("the meridian's table has {} x and {} y; it needs two or more points",
+                                 x.size(), y.size()));
+  for (std::size_t i = 0; i + 1 < x.size(); ++i)
+    if (!(x[i] < x[i + 1]))
+      throw ModelError(
+          fmt::format("the meridian's table must rise in x, but {} is followed by {}", x[i], x[i + 1]));
+  Table pieces{x, y, monotone_slopes(x, y)};
+  return Meridian([pieces = std::move(pieces)](double at) { return pieces.at(at); }, std::move(x));
+}
+
+Meridian Meridian::make(const MeridianOptions& options) {
+  return options.kind == MeridianKind::table ? table(options.x, options.y) : parabola(options.coefficient);
+}
+
+double Meridian::angle(double x) const {
+  return std::atan(at(x).slope);
+}
+
+double Meridian::arc_length(double x1, double x2) const {
+  if (x2 < x1) return -arc_length(x2, x1);
+  const auto speed = [&](double x) { return std::hypot(1.0, at(x).slope); };
+  double length = 0, from = x1;
+  for (const double corner : breaks_) {
+    if (corner <= from || corner >= x2) continue;
+    length += integrate(speed, from, corner);
+    from = corner;
+  }
+  return length + integrate(speed, from, x2);
+}
+
+double Meridian::advance(double x1, double length) const {
+  double x = x1 + length / std::hypot(1.0, at(x1).slope);
+  for (int i = 0; i < 50; ++i) {
+    const double step = (length - arc_length(x1, x)) / std::hypot(1.0, at(x).slope);
+    x += step;
+    if (std::abs(step) <= 1e-14 * (std::abs(x) + std::abs(length))) break;
+  }
+  return x;
+}
+
+double Meridian::distance(double x, double y) const {
+  double foot = x;
+  for (int i = 0; i < 50; ++i) {
+    const Jet f = at(foot);
+    const double along = (x - foot) + (y - f.value) * f.slope;
+    const double slope = 1 + f.slope * f.slope - (y - f.value) * f.curvature;
+    const double step = along / std::max(slope, 0.5);
+    foot += step;
+    if (std::abs(step) <= 1e-14 * (1 + std::abs(foot))) break;
+  }
+  const Jet f = at(foot);
+  return std::copysign(std::hypot(x - foot, y - f.value), y - at(x).value);
+}
+
+}  // namespace tautline::rod
