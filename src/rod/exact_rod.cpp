@@ -175,15 +175,15 @@ VecX start_vector(const Problem& problem, const VecX& x, const VecX& y, const Ve
   return z;
 }
 
-ExactSolution finish(SolveSummary summary, RodShape shape, const VecX& slopes) {
-  ExactSolution solution{std::move(summary), std::move(shape), {}};
+RodSolution finish(SolveSummary summary, RodShape shape, const VecX& slopes) {
+  RodSolution solution{std::move(summary), std::move(shape), {}};
   if (solution.summary.converged()) solution.stability = judge_stability(solution.shape, slopes);
   return solution;
 }
 
 }  // namespace
 
-ExactSolution design_exact(const Umbrella& umbrella, const ExactOptions& options) {
+RodSolution design_exact(const Umbrella& umbrella, const ExactOptions& options) {
   const bool on_target = options.form == ExactForm::nodes_on_target;
   const double size = umbrella.rod.lengths.sum();
   const auto conditions = [&](int k, double x, double y, double) -> std::vector<Condition> {
@@ -194,7 +194,7 @@ ExactSolution design_exact(const Umbrella& umbrella, const ExactOptions& options
     return {{(y - f.value) / size, -f.slope / size, 1 / size, 0}};
   };
   const Problem problem{umbrella.rod, {umbrella.rod.links(), on_target}, conditions};
-  const CantileverSolution rough = design_cantilevers(umbrella, {});
+  const RodSolution rough = design_cantilevers(umbrella, {});
   VecX z = start_vector(problem, umbrella.target_x, umbrella.target_y, umbrella.target_angle,
                         rough.shape.reaction);
   SolveSummary summary = solve(problem, options, z);
@@ -205,8 +205,8 @@ ExactSolution design_exact(const Umbrella& umbrella, const ExactOptions& options
   return finish(std::move(summary), std::move(shape), slopes);
 }
 
-ExactSolution load_exact(const Rod& rod, const VecX& reactions, const VecX& start,
-                         const ExactOptions& options) {
+RodSolution load_exact(const Rod& rod, const VecX& reactions, const VecX& start,
+                       const ExactOptions& options) {
   const int m = rod.links();
   const double force = rod.bending_stiffness.maxCoeff() / std::pow(rod.lengths.sum(), 2);
   const auto conditions = [&](int k, double, double, double reaction) -> std::vector<Condition> {
@@ -226,8 +226,8 @@ ExactSolution load_exact(const Rod& rod, const VecX& reactions, const VecX& star
   return finish(std::move(summary), make_shape(problem, z), VecX::Zero(m));
 }
 
-ExactSolution turn_exact(const Umbrella& umbrella, const VecX& lengths, const VecX& stiffness,
-                         const ExactOptions& options) {
+RodSolution turn_exact(const Umbrella& umbrella, const VecX& lengths, const VecX& stiffness,
+                       const ExactOptions& options) {
   const int m = umbrella.rod.links();
   Rod rod{lengths, umbrella.rod.bending_stiffness, umbrella.root_at(0)};
   Cables cables = umbrella.cables;

@@ -27,7 +27,7 @@ template <class F>
 double integrate(const F& f, double a, double b, int depth = 0) {
   const double middle = (a + b) / 2, whole = gauss(f, a, b),
                halves = gauss(f, a, middle) + gauss(f, middle, b);
-  if (std::abs(whole - halves) <= 1e-13 * std::abs(halves) || depth == 20) return halves;
+  if (!(std::abs(whole - halves) > 1e-13 * std::abs(halves)) || depth == 20) return halves;
   return integrate(f, a, middle, depth + 1) + integrate(f, middle, b, depth + 1);
 }
 
@@ -35,32 +35,37 @@ double sign(double value) {
   return value > 0 ? 1 : value < 0 ? -1 : 0;
 }
 
-/// Slope at an end of the table from three points, limited so that the cubic stays monotone.
-double end_slope(double h0, double h1, double secant_0, double secant_1) {
-  const double slope = ((2 * h0 + h1) * secant_0 - h0 * secant_1) / (h0 + h1);
-  if (sign(slope) != sign(secant_0)) return 0;
-  if (sign(secant_0) != sign(secant_1) && std::abs(slope) > 3 * std::abs(secant_0)) return 3 * secant_0;
+/// Slope at point i of the polynomial through the five points nearest to it, by barycentric weights (Berrut &
+/// Trefethen 2004).
+double slope_of_neighbours(const std::vector<double>& x, const std::vector<double>& y, int i) {
+  const int n = static_cast<int>(x.size()), count = std::min(n, 5);
+  const int first = std::clamp(i - 2, 0, n - count), end = first + count;
+  const auto product = [&](int j) {
+    double differences = 1;
+    for (int k = first; k < end; ++k)
+      if (k != j) differences *= x[j] - x[k];
+    return differences;
+  };
+  double slope = 0;
+  for (int j = first; j < end; ++j)
+    if (j != i) slope += product(i) / product(j) * (y[j] - y[i]) / (x[i] - x[j]);
   return slope;
 }
 
-/// Slopes at the points: weighted harmonic means of the neighbouring secants, zero at extrema (Fritsch &
-/// Butland 1984), which satisfy the condition of Fritsch & Carlson.
+/// Slopes at the points, of fourth order where the data allow, limited to three times the lesser neighbouring
+/// secant and to zero at extrema, so that the cubics are monotone between points (Hyman 1983).
 std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vector<double>& y) {
-  const std::size_t n = x.size();
-  std::vector<double> h, secant, slope(n);
-  for (std::size_t i = 0; i + 1 < n; ++i) {
-    h.push_back(x[i + 1] - x[i]);
-    secant.push_back((y[i + 1] - y[i]) / h[i]);
+  const int n = static_cast<int>(x.size());
+  const auto secant = [&](int i) { return (y[i + 1] - y[i]) / (x[i + 1] - x[i]); };
+  std::vector<double> slopes(n);
+  for (int i = 0; i < n; ++i) {
+    const double left = secant(std::max(i - 1, 0)), right = secant(std::min(i, n - 2));
+    const double slope = slope_of_neighbours(x, y, i);
+    const bool is_extreme = sign(left) != sign(right) || sign(slope) != sign(left);
+    const double most = 3 * std::min(std::abs(left), std::abs(right));
+    slopes[i] = is_extreme ? 0 : std::clamp(slope, -most, most);
   }
-  if (n == 2) return {secant[0], secant[0]};
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    if (secant[i - 1] * secant[i] <= 0) continue;
-    const double w1 = 2 * h[i] + h[i - 1], w2 = h[i] + 2 * h[i - 1];
-    slope[i] = (w1 + w2) / (w1 / secant[i - 1] + w2 / secant[i]);
-  }
-  slope[0] = end_slope(h[0], h[1], secant[0], secant[1]);
-  slope[n - 1] = end_slope(h[n - 2], h[n - 3], secant[n - 2], secant[n - 3]);
-  return slope;
+  return slopes;
 }
 
 /// Cubic Hermite pieces, straight lines outside.

@@ -32,14 +32,18 @@ bool move(const std::function<Linearised(const VecX&)>& problem, const VecX& ste
 
 }  // namespace
 
+SolveSummary ended(SolveSummary summary, SolveStatus status, std::string reason) {
+  summary.status = status;
+  summary.reason = std::move(reason);
+  summary.total_iterations = summary.iterations();
+  return summary;
+}
+
 SolveSummary solve_newton(const std::function<Linearised(const VecX&)>& problem, const VecX& size,
                           double tolerance, int max_iterations, VecX& x) {
   SolveSummary summary;
   const auto end = [&](SolveStatus status, std::string reason) {
-    summary.status = status;
-    summary.reason = std::move(reason);
-    summary.total_iterations = summary.iterations();
-    return summary;
+    return ended(std::move(summary), status, std::move(reason));
   };
   Linearised at = problem(x);
   if (!at.residual.allFinite() || !at.jacobian.allFinite())

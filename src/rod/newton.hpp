@@ -4,6 +4,7 @@
 
 #include <complex>
 #include <functional>
+#include <string>
 
 #include <tautline/core/types.hpp>
 #include <tautline/rod/solve_summary.hpp>
@@ -12,6 +13,9 @@ namespace tautline::rod {
 
 using Complex = std::complex<double>;
 using VecC = Eigen::VectorXcd;
+
+/// The summary with its end.
+SolveSummary ended(SolveSummary summary, SolveStatus status, std::string reason);
 
 /// A residual of comparable, dimensionless entries and its derivative by the unknowns.
 struct Linearised {

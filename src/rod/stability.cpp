@@ -39,16 +39,18 @@ void add_link(const RodShape& shape, int k, double axial_force, SecondVariation&
 
 }  // namespace
 
+Stability compare_forms(const MatX& energy, const MatX& bending) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> modes(energy, bending, Eigen::EigenvaluesOnly);
+  return {static_cast<int>((modes.eigenvalues().array() < 0).count()), modes.eigenvalues()[0]};
+}
+
 Stability judge_stability(const RodShape& shape, const VecX& slopes) {
   const int m = shape.rod.links(), n = m * intervals_per_link / 2;
   SecondVariation variation{MatX::Zero(n, n), MatX::Zero(n, n), MatX::Zero(n, m)};
   const VecX axial_force = shape.axial_force();
   for (int k = 0; k < m; ++k) add_link(shape, k, axial_force[k], variation);
-  const MatX whole = variation.bending - variation.load +
-                     variation.radius * slopes.asDiagonal() * variation.radius.transpose();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> modes(whole, variation.bending,
-                                                             Eigen::EigenvaluesOnly);
-  return {static_cast<int>((modes.eigenvalues().array() < 0).count()), modes.eigenvalues()[0]};
+  const MatX cables = variation.radius * slopes.asDiagonal() * variation.radius.transpose();
+  return compare_forms(variation.bending - variation.load + cables, variation.bending);
 }
 
 }  // namespace tautline::rod

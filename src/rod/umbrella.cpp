@@ -53,6 +53,8 @@ void place_targets(Umbrella& umbrella, double root_radius) {
     umbrella.target_x[k] = x;
     umbrella.target_y[k] = umbrella.meridian.at(x).value;
     umbrella.target_angle[k] = umbrella.meridian.angle(x);
+    if (!std::isfinite(x) || !std::isfinite(umbrella.target_y[k]))
+      throw ModelError(fmt::format("the meridian has no point for node {}", k + 1));
   }
 }
 
@@ -110,7 +112,14 @@ Root Umbrella::root_at(double turn) const {
 }
 
 Umbrella make_umbrella(const UmbrellaOptions& options) {
-  return make_umbrella(options, Meridian::make(options.meridian));
+  const Umbrella umbrella = make_umbrella(options, Meridian::make(options.meridian));
+  const auto& table = options.meridian.x;
+  const double first = options.root_radius, last = umbrella.target_x[options.links - 1];
+  if (options.meridian.kind == MeridianKind::table && (first < table.front() || last > table.back()))
+    throw ModelError(
+        fmt::format("the meridian's table goes from x = {:.6g} to {:.6g} m, the rod from {:.6g} to {:.6g} m",
+                    table.front(), table.back(), first, last));
+  return umbrella;
 }
 
 Umbrella make_umbrella(const UmbrellaOptions& options, Meridian meridian) {

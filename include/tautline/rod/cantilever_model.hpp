@@ -6,20 +6,9 @@
 
 #include <optional>
 
-#include <tautline/rod/shape.hpp>
-#include <tautline/rod/solve_summary.hpp>
+#include <tautline/rod/solution.hpp>
 
 namespace tautline::rod {
-
-/// What the model found.
-struct CantileverSolution {
-  SolveSummary summary;
-  RodShape shape;
-  VecX deflection;       ///< v_k / a_k [-]
-  VecX rotation;         ///< theta_k - theta_(k-1) [rad]
-  int unstable = 0;      ///< negative eigenvalues of the energy's second derivative, cables included
-  double stability = 0;  ///< its least eigenvalue relative to the bending stiffness, 1 for a free rod [-]
-};
 
 /// @brief Inverse problem: reactions that bend the rod to the target, eqs (3.1)-(3.3).
 ///
@@ -27,16 +16,16 @@ struct CantileverSolution {
 /// along the links. Moments use the target's Y, as in the paper's tables 4 and 5. The stability is that of
 /// the rod with cables of the stiffnesses found.
 /// @param start angles theta_k to begin with [rad]; not given: the target's
-CantileverSolution design_cantilevers(const Umbrella& umbrella, const CantileverOptions& options,
-                                      const std::optional<VecX>& start = {});
+RodSolution design_cantilevers(const Umbrella& umbrella, const CantileverOptions& options,
+                               const std::optional<VecX>& start = {});
 
 /// Equilibrium under given constant forces, eq. (2.9), by Newton's method from angles `start` [rad].
-CantileverSolution load_cantilevers(const Rod& rod, const VecX& reactions, const VecX& start,
-                                    const CantileverOptions& options);
+RodSolution load_cantilevers(const Rod& rod, const VecX& reactions, const VecX& start,
+                             const CantileverOptions& options);
 
 /// @brief Forward problem: the root is turned from the straight rod to the stop, cables of given stiffness
 /// E_T F_k [N] stretch and bend the rod.
-CantileverSolution turn_cantilevers(const Umbrella& umbrella, const VecX& stiffness,
-                                    const CantileverOptions& options);
+RodSolution turn_cantilevers(const Umbrella& umbrella, const VecX& stiffness,
+                             const CantileverOptions& options);
 
 }  // namespace tautline::rod

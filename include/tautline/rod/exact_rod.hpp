@@ -3,31 +3,21 @@
 /// The inextensible rod without approximation: X' = cos theta, Y' = sin theta, M = EI theta', M' = -N_k sin
 /// theta on each link, joined at the nodes and solved by multiple shooting. Theory: docs/theory/rod.md
 
-#include <tautline/rod/shape.hpp>
-#include <tautline/rod/solve_summary.hpp>
-#include <tautline/rod/stability.hpp>
+#include <tautline/rod/solution.hpp>
 
 namespace tautline::rod {
 
-/// What was found. The shape is meaningful if the summary converged.
-struct ExactSolution {
-  SolveSummary summary;
-  RodShape shape;
-  Stability stability;  ///< with the cables that give the reactions, or under constant forces
-};
-
 /// @brief Inverse problem: reactions that bring the nodes onto the surface (form A) or onto the target's
 /// nodes with lengths found (form B). Starts from the target and the reactions of the cantilever model there.
-ExactSolution design_exact(const Umbrella& umbrella, const ExactOptions& options);
+RodSolution design_exact(const Umbrella& umbrella, const ExactOptions& options);
 
 /// Equilibrium under given constant forces [N], from angles `start` of the nodes [rad].
-ExactSolution load_exact(const Rod& rod, const VecX& reactions, const VecX& start,
-                         const ExactOptions& options);
+RodSolution load_exact(const Rod& rod, const VecX& reactions, const VecX& start, const ExactOptions& options);
 
 /// @brief Forward problem: the root is turned from the straight rod to the stop while cables of given
 /// stiffness E_T F_k [N] bend the rod.
 /// @param lengths of the links, e.g. of form B; the cables are cut for them [m]
-ExactSolution turn_exact(const Umbrella& umbrella, const VecX& lengths, const VecX& stiffness,
-                         const ExactOptions& options);
+RodSolution turn_exact(const Umbrella& umbrella, const VecX& lengths, const VecX& stiffness,
+                       const ExactOptions& options);
 
 }  // namespace tautline::rod

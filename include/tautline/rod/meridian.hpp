@@ -23,7 +23,7 @@ class Meridian {
   explicit Meridian(Function f, std::vector<double> breaks = {});
   /// Y = coefficient X^2.
   static Meridian parabola(double coefficient);
-  /// Monotone cubic through the points (Fritsch & Carlson 1980), straight beyond them.
+  /// Cubics through the points, monotone between them (Hyman 1983), straight beyond them.
   /// @throws ModelError unless two or more points with rising x are given
   static Meridian table(std::vector<double> x, std::vector<double> y);
   /// @throws ModelError as table

@@ -6,7 +6,7 @@ namespace tautline::rod {
 
 enum class MeridianKind {
   parabola,  ///< Y = coefficient X^2
-  table      ///< monotone cubic through points
+  table      ///< monotone cubics through points
 };
 
 /// The curve Y = F(X) whose rotation about the axis Y is the surface wanted; X is the distance from the axis.

@@ -11,8 +11,9 @@ struct SolveSummary {
   SolveStatus status = SolveStatus::diverging;
   std::string reason;
   std::vector<double> increments;  ///< largest change of an unknown, relative to its size, by iteration
-  /// Successive approximation: by what the last increments shrank from one to the next; from 1 on it
-  /// diverges. Zero for Newton's method.
+  /// Inverse problem of the cantilever model: by what the paper's iteration shrinks errors. At a solution,
+  /// whichever method found it, the spectral radius of the iteration's derivative: from 1 on the iteration
+  /// leaves it. Where the iteration was given up, what its increments grew by last. Zero if unknown.
   double contraction_rate = 0;
   int steps = 1;             ///< in turning the root; 1 for a solve in one go
   int total_iterations = 0;  ///< of all steps, failed ones too

@@ -12,6 +12,10 @@ struct Stability {
   double least = 1;  ///< [-]
 };
 
+/// Of two quadratic forms, the second one positive.
+Stability compare_forms(const MatX& energy, const MatX& bending);
+
+/// Of the exact rod.
 /// @param slopes dR_k/dX_k of the node forces [N/m]; zero for constant forces
 Stability judge_stability(const RodShape& shape, const VecX& slopes);
 
