@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <limits>
 
 namespace tautline::rod {
 
@@ -47,15 +48,18 @@ Arc<T> taylor_step(const Arc<T>& from, const T& mu, const T& h) {
 }
 
 /// The rod from its angle and curvature over a length, with mu = N / EI [1/m2]. Exact to rounding: a step is
-/// a quarter of the shortest length in which the motion may change.
+/// a quarter of the shortest length in which the motion may change. No number where that is too short for a
+/// rod that has not been wound up many times.
 template <class T>
 Arc<T> propagate(const T& angle, const T& curvature, const T& mu, const T& length) {
+  constexpr double most_steps = 1000;
   const double root_mu = std::sqrt(std::abs(mu));
   const double rate =
       std::hypot(std::abs(curvature), 2 * root_mu) + root_mu;  // largest curvature, and sqrt mu
-  const double steps = std::ceil(std::min(4 * rate * std::abs(length), 1e4) + 1e-3);
+  const double steps = std::max(1.0, std::ceil(4 * rate * std::abs(length)));
   Arc<T> arc{T(0), T(0), angle, curvature};
-  for (double i = 0; i < steps; ++i) arc = taylor_step<T>(arc, mu, length / steps);
+  if (!(steps <= most_steps)) arc.x = std::numeric_limits<double>::quiet_NaN();
+  for (double i = 0; i < steps && steps <= most_steps; ++i) arc = taylor_step<T>(arc, mu, length / steps);
   return arc;
 }
 

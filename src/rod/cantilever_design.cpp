@@ -1,3 +1,5 @@
+#include <tautline/rod/cantilever_model.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,7 +9,6 @@
 
 #include <rod/cantilever.hpp>
 #include <rod/newton.hpp>
-#include <tautline/rod/cantilever_model.hpp>
 
 namespace tautline::rod {
 

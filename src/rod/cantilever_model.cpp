@@ -135,7 +135,7 @@ RodSolution turn_cantilevers(const Umbrella& umbrella, const VecX& stiffness,
         rod, c, options, [&](const VecC& radii) { return pull(cables, radii); }, z);
   };
   VecX z = VecX::Zero(2 * m);
-  SolveSummary summary = follow_turning(solve_at, smallest_turn, z);
+  SolveSummary summary = follow_turning(stiffness, solve_at, smallest_turn, z);
   const auto at = move<double>(umbrella.rod, c, z.head(m), z.tail(m));
   VecX reactions(m), slopes(m);
   for (int k = 0; k < m; ++k) {

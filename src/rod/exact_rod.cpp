@@ -195,8 +195,9 @@ RodSolution design_exact(const Umbrella& umbrella, const ExactOptions& options) 
   };
   const Problem problem{umbrella.rod, {umbrella.rod.links(), on_target}, conditions};
   const RodSolution rough = design_cantilevers(umbrella, {});
-  VecX z = start_vector(problem, umbrella.target_x, umbrella.target_y, umbrella.target_angle,
-                        rough.shape.reaction);
+  const VecX reactions =
+      rough.shape.reaction.allFinite() ? rough.shape.reaction : VecX::Zero(umbrella.rod.links());
+  VecX z = start_vector(problem, umbrella.target_x, umbrella.target_y, umbrella.target_angle, reactions);
   SolveSummary summary = solve(problem, options, z);
   RodShape shape = make_shape(problem, z);
   Cables cables = umbrella.cables;
@@ -246,7 +247,7 @@ RodSolution turn_exact(const Umbrella& umbrella, const VecX& lengths, const VecX
     rod.root = umbrella.root_at(turn);
     return solve(problem, options, there);
   };
-  SolveSummary summary = follow_turning(solve_at, options.min_step, z);
+  SolveSummary summary = follow_turning(stiffness, solve_at, options.min_step, z);
   rod.root = umbrella.rod.root;
   RodShape shape = make_shape(problem, z);
   VecX slopes(m);

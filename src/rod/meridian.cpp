@@ -103,7 +103,8 @@ Meridian Meridian::table(std::vector<double> x, std::vector<double> y) {
     if (!(x[i] < x[i + 1]))
       throw ModelError(
           fmt::format("the meridian's table must rise in x, but {} is followed by {}", x[i], x[i + 1]));
-  Table pieces{x, y, monotone_slopes(x, y)};
+  auto slopes = monotone_slopes(x, y);
+  Table pieces{x, std::move(y), std::move(slopes)};
   return Meridian([pieces = std::move(pieces)](double at) { return pieces.at(at); }, std::move(x));
 }
 

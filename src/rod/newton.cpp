@@ -71,8 +71,14 @@ SolveSummary solve_newton(const std::function<Linearised(const VecX&)>& problem,
                   summary.increments.empty() ? 0 : summary.increments.back(), tolerance, max_iterations));
 }
 
-SolveSummary follow_turning(const std::function<SolveSummary(double turn, VecX& x)>& solve_at,
+SolveSummary follow_turning(const VecX& stiffness,
+                            const std::function<SolveSummary(double turn, VecX& x)>& solve_at,
                             double min_step, VecX& x) {
+  for (int k = 0; k < stiffness.size(); ++k)
+    if (!std::isfinite(stiffness[k]))
+      return ended(
+          {}, SolveStatus::impossible,
+          fmt::format("cable {} has no stiffness: no cable gives its node the reaction it needs", k + 1));
   SolveSummary last;
   int steps = 0, iterations = 0;
   double turn = 0, step = 0.25;

@@ -44,9 +44,10 @@ Linearised complex_step(const F& f, const VecX& x) {
   return out;
 }
 
-/// @brief Follows x from turn = 0, where it is a solution, to turn = 1; steps are halved on failure and
-/// doubled on success. x is left at the last point reached.
-SolveSummary follow_turning(const std::function<SolveSummary(double turn, VecX& x)>& solve_at,
+/// @brief Follows x from turn = 0, where it is a solution, to turn = 1 with cables of given stiffnesses;
+/// steps are halved twice on failure and doubled on success. x is left at the last point reached.
+SolveSummary follow_turning(const VecX& stiffness,
+                            const std::function<SolveSummary(double turn, VecX& x)>& solve_at,
                             double min_step, VecX& x);
 
 }  // namespace tautline::rod

@@ -73,6 +73,18 @@ TEST(Cable, RingPullsItsNodesInwards) {
   EXPECT_NEAR(cables.slopes(VecX::Constant(1, 2.2), VecX::Constant(1, 10.0))[0], 50, 1e-12);
 }
 
+TEST(Cable, OfAGivenReactionHasTheSlopeOfItsLaw) {
+  CableOptions bilinear{CableLaw::bilinear, 0.1, 0.25, 0.05};
+  const Cables cables{24, bilinear, VecX::Constant(2, 2.0), VecX::Constant(2, 100.0)};
+  const VecX x = (VecX(2) << 2.1, 2.6).finished();  // strains on both sides of the knee
+  VecX reactions(2);
+  for (int k = 0; k < 2; ++k) reactions[k] = cables.reaction(k, x[k]).value;
+  EXPECT_NEAR(cables.reaction(1, 2.6).value, 2 * std::sin(std::numbers::pi / 24) * 100 * 0.15, 1e-13);
+  for (int k = 0; k < 2; ++k)
+    EXPECT_NEAR(cables.slopes(x, reactions)[k], cables.reaction(k, x[k]).slope, 1e-12);
+  EXPECT_LT((stiffness_for(cables, x, reactions) - cables.stiffness).norm(), 1e-12);
+}
+
 TEST(Cable, HasNoStiffnessWhereItCannotPull) {
   const Cables cables{6, {}, VecX::Constant(1, 2.0), {}};
   EXPECT_TRUE(std::isnan(stiffness_for(cables, VecX::Constant(1, 1.9), VecX::Constant(1, 10.0))[0]));

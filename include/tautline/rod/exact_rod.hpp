@@ -8,7 +8,8 @@
 namespace tautline::rod {
 
 /// @brief Inverse problem: reactions that bring the nodes onto the surface (form A) or onto the target's
-/// nodes with lengths found (form B). Starts from the target and the reactions of the cantilever model there.
+/// nodes with lengths found (form B). Starts from the target, with the reactions that the
+/// cantilever model finds.
 RodSolution design_exact(const Umbrella& umbrella, const ExactOptions& options);
 
 /// Equilibrium under given constant forces [N], from angles `start` of the nodes [rad].

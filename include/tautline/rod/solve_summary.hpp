@@ -4,7 +4,13 @@
 
 namespace tautline::rod {
 
-enum class SolveStatus { converged, too_many_iterations, diverging, singular };
+enum class SolveStatus {
+  converged,
+  too_many_iterations,
+  diverging,
+  singular,
+  impossible  ///< something needed is not there
+};
 
 /// How a solve went, with a sentence that holds the numbers that ended it.
 struct SolveSummary {
