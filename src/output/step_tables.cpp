@@ -205,6 +205,29 @@ Table buckling_table(const Json& step) {
   return table;
 }
 
+Table rod_table(const Json& step) {
+  /// Figures of nodes 1 to m, with that of the root before them.
+  const auto from_root = [&](const Json& root, const char* name, double factor = 1) {
+    Json list = Json::array({root});
+    for (const auto& value : member(step, name))
+      list.push_back(value.is_number() ? Json(factor * value.get<double>()) : Json());
+    return list;
+  };
+  Table table{"Nodes of the rod", {"node"}, {}};
+  const Json& root = member(step, "root");
+  if (root.is_null()) return table;
+  const Json x = from_root(member(root, "X"), "X");
+  for (std::size_t k = 0; k < x.size(); ++k) table.rows.push_back({fmt::format("{}", k)});
+  add_list(table, "X [m]", x, 5);
+  add_list(table, "Y [m]", from_root(member(root, "Y"), "Y"), 5);
+  add_list(table, "theta [rad]", from_root(member(root, "theta"), "theta"), 4);
+  add_list(table, "moment [N m]", member(member(step, "moments"), "II"), 5);
+  add_list(table, "cable pulls [N]", from_root(Json(), "reaction"), 5);
+  add_list(table, "strain [%]", from_root(Json(), "strain", 100), 4);
+  add_list(table, "E F [N]", from_root(Json(), "stiffness"), 5);
+  return table;
+}
+
 Table path_table(const Json& path) {
   static constexpr Column columns[] = {{"lambda", "load factor"}, {"monitor", "monitor [m]"}};
   return numbered_table("Load path", "point", path, 0, columns);
