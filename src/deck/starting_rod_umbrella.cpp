@@ -16,7 +16,7 @@ reflector:                 # all of the structure: no sections, groups or suppor
   bending_stiffness: [4000, 3600, 3000, 2400, 1600, 800]   # EI, N m2
   root_radius: 0.3         # m, of the root from the axis when it stands at the stop
   root_offset: 0.0         # m, by which it is nearer to the axis while the rod is straight
-  straight_angle: 50       # degree, of the straight rods to the plane across the axis
+  straight_angle: 30       # degree, of the straight rods to the plane across the axis
   meridian:
     coefficient: 0.08      # 1/m: Y = coefficient X^2; or points: [[x, y], ...]
   cable:
@@ -31,7 +31,7 @@ steps:
   - kind: rod_shaping      # what cables of a workshop make of it
     name: built
     method: exact
-    stiffness: [5000, 1200, 800, 320, 220, 550]   # N, E F of each parallel
+    stiffness: [1470, 5600, 2900, 4200, 200, 19300]   # N, E F of each parallel
 )deck";
 
 }  // namespace tautline::deck

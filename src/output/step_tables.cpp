@@ -1,6 +1,7 @@
 #include "output/detail/step_tables.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include <fmt/format.h>
@@ -101,6 +102,16 @@ Json component(const Json& list, std::size_t index) {
   if (list.is_array())
     for (const auto& row : list) values.push_back(entry(row, index));
   return values;
+}
+
+/// What is below rounding beside the largest entry as 0.
+Json without_rounding(const Json& list) {
+  double largest = 0;
+  for (const auto& value : list) largest = std::max(largest, std::abs(number(value).value_or(0)));
+  Json result = list;
+  for (auto& value : result)
+    if (std::abs(number(value).value_or(0)) < 1e-12 * largest) value = 0;
+  return result;
 }
 
 }  // namespace
@@ -221,7 +232,7 @@ Table rod_table(const Json& step) {
   add_list(table, "X [m]", x, 5);
   add_list(table, "Y [m]", from_root(member(root, "Y"), "Y"), 5);
   add_list(table, "theta [rad]", from_root(member(root, "theta"), "theta"), 4);
-  add_list(table, "moment [N m]", member(member(step, "moments"), "II"), 5);
+  add_list(table, "moment [N m]", without_rounding(member(member(step, "moments"), "II")), 5);
   add_list(table, "cable pulls [N]", from_root(Json(), "reaction"), 5);
   add_list(table, "strain [%]", from_root(Json(), "strain", 100), 4);
   add_list(table, "E F [N]", from_root(Json(), "stiffness"), 5);

@@ -33,7 +33,7 @@ RodError error_along(const Meridian& meridian, const RodShape& shape) {
 }
 
 std::vector<std::string> warn(const Cables& cables, const VecX& strain, const VecX& reaction) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings, stretched;  // what no cable can do comes first
   for (int k = 0; k < strain.size(); ++k) {
     if (reaction[k] < 0)
       warnings.push_back(fmt::format("node {} must be pushed outwards with {:.4g} N, which no cable can",
@@ -42,9 +42,10 @@ std::vector<std::string> warn(const Cables& cables, const VecX& strain, const Ve
       warnings.push_back(fmt::format("cable {} is slack at strain {:.3g} and cannot pull with {:.4g} N",
                                      k + 1, strain[k], reaction[k]));
     if (strain[k] > cables.options.strain_limit)
-      warnings.push_back(fmt::format("cable {} is stretched by {:.1f} %, beyond strain_limit = {:.1f} %",
-                                     k + 1, 100 * strain[k], 100 * cables.options.strain_limit));
+      stretched.push_back(fmt::format("cable {} is stretched by {:.1f} %, beyond strain_limit = {:.1f} %",
+                                      k + 1, 100 * strain[k], 100 * cables.options.strain_limit));
   }
+  warnings.insert(warnings.end(), stretched.begin(), stretched.end());
   return warnings;
 }
 

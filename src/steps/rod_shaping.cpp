@@ -40,7 +40,7 @@ Json list(const VecX& values) {
 
 /// What the step was told, in the words of the deck.
 void add_method(Json& entry, const RodShapingOptions& options) {
-  entry["problem"] = options.stiffness ? "shape from cables" : "cables from shape";
+  entry["sought"] = options.stiffness ? "shape" : "cables";
   if (options.method == Method::exact) {
     entry["rod_model"] = "exact";
     if (!options.stiffness)
