@@ -71,12 +71,14 @@ Block make_root() {
   b.map("materials", &Deck::materials, material_blocks()).says("Materials by name.");
   b.map("sections", &Deck::sections, section_blocks())
       .required_unless(is_complete)
-      .says("Sections of cables, beams, membranes, shells and other elements by name.");
+      .says(
+          "Sections of cables, beams, membranes, shells and other elements by name; a rod-umbrella needs "
+          "none.");
   b.map("groups", &Deck::groups, group_blocks())
       .required_unless(is_complete)
       .says(
           "Section and initial state of each group of elements, by the group's name; or named sets of "
-          "nodes.");
+          "nodes. A rod-umbrella needs none.");
   b.list("supports", &Deck::supports, support_blocks()).says("Fixed nodes.");
   b.list("loads", &Deck::loads, load_blocks()).says("Loads, ramped up by `equilibrium` steps.");
   b.list("steps", &Deck::steps, step_blocks())
