@@ -93,6 +93,15 @@ struct Binding<std::array<double, 2>> {
   static std::string text(const std::array<double, 2>&) { return {}; }
 };
 
+template <>
+struct Binding<std::vector<double>> {
+  static constexpr Type type = Type::numbers;
+  static auto read(Reader& reader, const Keyword& keyword, const Node& node) {
+    return reader.numbers(keyword, node);
+  }
+  static std::string text(const std::vector<double>&) { return {}; }
+};
+
 /// The part of the owner that holds the options: the owner itself, an alternative of a variant, or of its
 /// `options`.
 template <class Options, class Owner>

@@ -41,7 +41,7 @@ class GroupCheck {
 
   void check_defined(const Entry& entry) {
     if (names_.open() || names_.defines(entry.key)) return;
-    const bool reflector = deck_.reflector.has_value();
+    const bool reflector = deck_.truss() != nullptr;
     reader_.complain(
         entry.place, fmt::format("no elements belong to group \"{}\"", entry.key), "in groups",
         fmt::format("groups of the {}: {}", reflector ? "reflector" : "model", join(names_.element_groups())),
@@ -117,14 +117,14 @@ class GroupCheck {
     if (state == nullptr && !supplied)
       reader_.complain(entry.place, fmt::format("cable group \"{}\" has no initial state", entry.key),
                        "in groups", "expected exactly one of: " + join(initial_states()), remedy(entry.key));
-    if (state != nullptr && supplied && deck_.reflector)
+    if (state != nullptr && supplied && deck_.truss())
       reader_.complain(entry.value.find(*state)->label,
                        fmt::format("the tension of \"{}\" follows from form_finding", entry.key),
                        context(entry.key), {}, fmt::format("leave \"{}\" out", *state));
   }
 
   std::string remedy(const std::string& group) const {
-    if (deck_.reflector && group == "ties") return "a form_finding step would find the tension of \"ties\"";
+    if (deck_.truss() && group == "ties") return "a form_finding step would find the tension of \"ties\"";
     if (deck_.model) return "a form_finding step with method linear would supply it to its net";
     return {};
   }
@@ -133,7 +133,7 @@ class GroupCheck {
     return std::any_of(deck_.steps.begin(), deck_.steps.end(), [&](const steps::Step& step) {
       const auto* form_finding = std::get_if<FormFindingOptions>(&step.options);
       if (form_finding == nullptr || step.kind.empty()) return false;
-      if (deck_.reflector) return group == "ties";
+      if (deck_.truss()) return group == "ties";
       const bool in_net = form_finding->net.empty() || contains(form_finding->net, group);
       return form_finding->method == FormFindingOptions::Method::linear && in_net;
     });

@@ -54,6 +54,9 @@ class StepCheck {
       const Step& step = deck_.steps[i];
       if (node == nullptr || step.kind.empty()) continue;
       context_ = fmt::format("in steps.{} (\"{}\")", i, label_of(*node));
+      if (!fits_structure(step, *node)) continue;
+      if (const auto* options = std::get_if<RodShapingOptions>(&step.options))
+        check_rod_shaping(*options, *node);
       if (const auto* options = std::get_if<FormFindingOptions>(&step.options))
         check_form_finding(*options, *node);
       if (std::holds_alternative<TuningStepOptions>(step.options)) check_tuning(*node);
@@ -63,8 +66,32 @@ class StepCheck {
   }
 
  private:
+  /// Complains unless the structure is of the kind that the step works on.
+  bool fits_structure(const Step& step, const Node& node) {
+    const bool of_rods = std::holds_alternative<RodShapingOptions>(step.options);
+    const Node* kind = root_.at({"reflector", "kind"});
+    const bool unknown = kind != nullptr && reflector_blocks().find(kind->text) == nullptr;
+    if (unknown || of_rods == (deck_.rod_umbrella() != nullptr)) return true;
+    const Node& place = *node.find("kind");
+    if (of_rods)
+      reader_.complain(place.place, "kind rod_shaping needs a reflector of kind rod-umbrella", context_);
+    else
+      reader_.complain(place.place, fmt::format("kind {} does not work on a rod-umbrella", step.kind),
+                       context_, "expected kind: rod_shaping");
+    return false;
+  }
+
+  void check_rod_shaping(const RodShapingOptions& options, const Node& node) {
+    const Node* stiffness = node.find("stiffness");
+    if (deck_.rod_umbrella() == nullptr || stiffness == nullptr || !options.stiffness) return;
+    const int links = deck_.rod_umbrella()->links;
+    if (const auto n = static_cast<int>(options.stiffness->size()); n != 1 && n != links)
+      reader_.complain(stiffness->place, fmt::format("stiffness has {} numbers for {} cables", n, links),
+                       context_, fmt::format("expected one number for all, or {}", links));
+  }
+
   void check_form_finding(const FormFindingOptions& options, const Node& node) {
-    if (deck_.reflector && node.find("fixed") != nullptr)
+    if (deck_.truss() && node.find("fixed") != nullptr)
       reader_.complain(node.find("fixed")->label, "\"fixed\" is for plain models", context_, {},
                        "the net of a reflector is fixed on its rim");
     if (options.method != FormFindingOptions::Method::tension) return;
@@ -83,7 +110,7 @@ class StepCheck {
 
   std::vector<std::string> net_of(const FormFindingOptions& options) const {
     if (!options.net.empty()) return options.net;
-    return deck_.reflector ? std::vector<std::string>{"front_net"} : names_.known("cable group");
+    return deck_.truss() ? std::vector<std::string>{"front_net"} : names_.known("cable group");
   }
 
   void check_tuning(const Node& node) {

@@ -73,6 +73,10 @@ Keyword& Keyword::required() {
   fallback.clear();
   return *this;
 }
+Keyword& Keyword::required_unless(std::function<bool(const Node&)> other) {
+  spared = std::move(other);
+  return required();
+}
 Keyword& Keyword::one_of(std::vector<std::string> words) {
   choices = std::move(words);
   return *this;
@@ -114,6 +118,10 @@ std::string Keyword::expectation() const {
       return "all, pinned, symmetry, or a list of x, y, z, rx, ry, rz";
     case Type::pair:
       return with_range("a number, or two numbers [first, second]", *this);
+    case Type::numbers:
+      return with_range("a number for all, or a list of numbers", *this);
+    case Type::points:
+      return with_range("a list of points [x, y]", *this);
     case Type::releases:
       return "all, or a list of torsion, bending_2, bending_3";
     case Type::edges:

@@ -27,6 +27,8 @@ enum class Type {
   names,        ///< a list of names, or one name
   vector,       ///< [x, y, z]
   pair,         ///< one number for both, or [first, second]
+  numbers,      ///< one number for all, or a list
+  points,       ///< list of [x, y]
   directions,   ///< all, pinned, symmetry, or a list of x, y, z, rx, ry, rz
   releases,     ///< all, or a list of torsion, bending_2, bending_3
   edges,        ///< list of [node, node]
@@ -59,6 +61,7 @@ struct Keyword {
   Range range;
   std::string sentence;
   bool is_required = false;
+  std::function<bool(const Node&)> spared;  ///< whether a block can do without the key though it is required
   std::vector<std::string> choices;
   std::vector<std::string> other_names;  ///< what the key was called before, or is called elsewhere
   std::string refers_to;                 ///< what the names stand for: material, section, ...
@@ -72,6 +75,7 @@ struct Keyword {
   Keyword& below(double high);
   Keyword& at_most(double high);
   Keyword& required();
+  Keyword& required_unless(std::function<bool(const Node&)> other);
   Keyword& one_of(std::vector<std::string> words);
   Keyword& refers(std::string kind);
   Keyword& also_called(std::vector<std::string> names);

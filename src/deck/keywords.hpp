@@ -6,7 +6,8 @@
 
 namespace tautline::deck {
 
-const BlockSet& reflector_blocks();  ///< of reflector::PerimeterTrussOptions
+const BlockSet& reflector_blocks();  ///< of Reflector
+Block rod_umbrella_block();          ///< of rod::UmbrellaOptions
 const BlockSet& model_blocks();      ///< of model::ModelOptions
 const BlockSet& material_blocks();   ///< of model::MaterialOptions
 const BlockSet& section_blocks();    ///< of model::SectionOptions
@@ -16,6 +17,9 @@ const BlockSet& load_blocks();       ///< of model::LoadOptions
 const BlockSet& step_blocks();       ///< of steps::Step
 const BlockSet& output_blocks();     ///< of output::OutputOptions
 const BlockSet& solver_blocks();     ///< of analysis::NewtonOptions
+
+/// Whether a reflector of this kind has all of its structure in its own block: no sections, groups, supports.
+bool is_complete_structure(const std::string& reflector_kind);
 
 /// The keys of a group of which a cable has one.
 const std::vector<std::string>& initial_states();

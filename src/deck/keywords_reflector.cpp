@@ -2,7 +2,7 @@
 #include <deck/builder.hpp>
 #include <deck/keywords.hpp>
 #include <tautline/core/text.hpp>
-#include <tautline/reflector/perimeter_truss_options.hpp>
+#include <tautline/deck/deck.hpp>
 
 namespace tautline::deck {
 
@@ -40,9 +40,10 @@ void check_struts(Reader& reader, const Node& node, Options& options) {
 }
 
 Block make_perimeter_truss() {
-  BlockBuilder<Options> b("reflector.perimeter-truss", "perimeter-truss",
-                          "Two triangular nets joined by ties between an upper and a lower rim that struts "
-                          "and crossed cords hold apart.");
+  BlockBuilder<Reflector, Options> b(
+      "reflector.perimeter-truss", "perimeter-truss",
+      "Two triangular nets joined by ties between an upper and a lower rim that struts "
+      "and crossed cords hold apart.");
   b.key("aperture", &Options::aperture)
       .in("m")
       .above(0)
@@ -95,8 +96,12 @@ Block make_perimeter_truss() {
 
 const BlockSet& reflector_blocks() {
   static const BlockSet set{
-      "reflector", "A parametric reflector.", {make_perimeter_truss()}, {"umbrella", "rod-umbrella"}};
+      "reflector", "A parametric reflector.", {make_perimeter_truss(), rod_umbrella_block()}, {"umbrella"}};
   return set;
+}
+
+bool is_complete_structure(const std::string& reflector_kind) {
+  return reflector_kind == "rod-umbrella";
 }
 
 }  // namespace tautline::deck

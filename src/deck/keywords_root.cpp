@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <deck/builder.hpp>
 #include <deck/keywords.hpp>
 #include <tautline/deck/deck.hpp>
@@ -36,6 +38,21 @@ void check_structure(Reader& reader, const Node& node, Deck&) {
                     "expected exactly one of them: the structure to be analysed");
 }
 
+/// A reflector that needs nothing else; one of an unknown kind is complained about already.
+bool is_complete(const Node& node) {
+  const Node* kind = node.at({"reflector", "kind"});
+  return kind != nullptr &&
+         (is_complete_structure(kind->text) || reflector_blocks().find(kind->text) == nullptr);
+}
+
+void check_needless(Reader& reader, const Node& node, Deck& deck) {
+  if (deck.rod_umbrella() == nullptr) return;
+  for (const char* key : {"materials", "sections", "groups", "supports", "loads", "solver"})
+    if (const Node* block = node.find(key))
+      reader.complain(block->label, fmt::format("\"{}\" has no effect on a rod-umbrella", key),
+                      reader.context(), {}, "its block \"reflector\" tells all of it");
+}
+
 Block make_root() {
   BlockBuilder<Deck> b("", "", "A deck describes one structure and what is done with it.");
   b.key("title", &Deck::title).says("Title for reports.");
@@ -53,13 +70,15 @@ Block make_root() {
       .says("A structure of named nodes or from a mesh file; or give `reflector`.");
   b.map("materials", &Deck::materials, material_blocks()).says("Materials by name.");
   b.map("sections", &Deck::sections, section_blocks())
-      .required()
-      .says("Sections of cables, beams, membranes, shells and other elements by name.");
+      .required_unless(is_complete)
+      .says(
+          "Sections of cables, beams, membranes, shells and other elements by name; a rod-umbrella needs "
+          "none.");
   b.map("groups", &Deck::groups, group_blocks())
-      .required()
+      .required_unless(is_complete)
       .says(
           "Section and initial state of each group of elements, by the group's name; or named sets of "
-          "nodes.");
+          "nodes. A rod-umbrella needs none.");
   b.list("supports", &Deck::supports, support_blocks()).says("Fixed nodes.");
   b.list("loads", &Deck::loads, load_blocks()).says("Loads, ramped up by `equilibrium` steps.");
   b.list("steps", &Deck::steps, step_blocks())
@@ -67,7 +86,10 @@ Block make_root() {
       .says("What is done, in order; each step goes on from the state the one before left.");
   b.block("output", &Deck::output, output_blocks()).says("Which results are written.");
   b.block("solver", &Deck::solver, solver_blocks()).says("Newton's method in all steps.");
-  b.check(check_structure);
+  b.check([](Reader& reader, const Node& node, Deck& deck) {
+    check_structure(reader, node, deck);
+    check_needless(reader, node, deck);
+  });
   return b.take();
 }
 

@@ -222,14 +222,85 @@ Block make_modal() {
   return b.take();
 }
 
+void check_rod_shaping(Reader& reader, const Node& node, RodShapingOptions& options) {
+  const auto useless = [&](const char* key, const std::string& with, const std::string& home) {
+    if (const Node* value = node.find(key))
+      reader.complain(value->label, fmt::format("\"{}\" has no effect with {}", key, with), reader.context(),
+                      {}, "it belongs to " + home);
+  };
+  const bool exact = options.method == RodShapingOptions::Method::exact;
+  if (exact)
+    for (const char* key : {"shortening", "solver"}) useless(key, "method exact", "method: cantilevers");
+  else
+    for (const char* key : {"form", "min_step"}) useless(key, "method cantilevers", "method: exact");
+  if (node.find("stiffness") != nullptr) {
+    if (exact) useless("form", "given stiffnesses", "a step that looks for them");
+    if (!exact) useless("solver", "given stiffnesses", "a step that looks for them");
+  } else if (exact) {
+    useless("min_step", "stiffnesses to be found", "a step with stiffness");
+  }
+}
+
+Block make_rod_shaping() {
+  using Options = RodShapingOptions;
+  auto b = step<Options>("rod_shaping",
+                         "On a rod-umbrella: finds the cables that bend the rods to the meridian; or, with "
+                         "`stiffness`, the shape "
+                         "that given cables bend them to.");
+  b.choice("method", &Options::method,
+           std::vector<std::pair<std::string, Options::Method>>{
+               {"exact", Options::Method::exact}, {"cantilevers", Options::Method::cantilevers}})
+      .says(
+          "exact: inextensible rod; cantilevers: one element for each link, Russkikh & Shklyarchuk (2021).");
+  b.choice(
+       "form", [](Options & o) -> auto& { return o.exact.form; },
+       std::vector<std::pair<std::string, rod::ExactForm>>{{"a", rod::ExactForm::nodes_on_surface},
+                                                           {"b", rod::ExactForm::nodes_on_target}})
+      .says(
+          "Method exact: a: lengths as given, nodes anywhere on the surface; b: nodes where the meridian has "
+          "them, lengths found.");
+  b.choice(
+       "shortening", [](Options & o) -> auto& { return o.cantilevers.shortening; },
+       std::vector<std::pair<std::string, rod::Shortening>>{{"consistent", rod::Shortening::consistent},
+                                                            {"as_published", rod::Shortening::as_published}})
+      .says("Method cantilevers: shortening of a bent link as integrated, or with the printed coefficients.");
+  b.choice(
+       "solver", [](Options & o) -> auto& { return o.cantilevers.method; },
+       std::vector<std::pair<std::string, rod::CantileverMethod>>{
+           {"newton", rod::CantileverMethod::newton}, {"successive", rod::CantileverMethod::successive}})
+      .says(
+          "Method cantilevers: Newton's method, or the published iteration, which diverges for many links.");
+  b.key("stiffness", &Options::stiffness)
+      .in("N")
+      .at_least(0)
+      .by_default("none: they are found")
+      .says(
+          "Stiffness E F of the cables, from the root outwards; the rods are turned to the stop with them.");
+  b.key("tolerance", &Options::tolerance)
+      .above(0)
+      .by_default("1e-10 (exact), 1e-9 (cantilevers)")
+      .says("Largest change in the last iteration, relative (exact), of an angle in rad (cantilevers).");
+  b.key("max_iterations", &Options::max_iterations)
+      .at_least(1)
+      .by_default("50 (exact), 2000 (cantilevers)")
+      .says("Most iterations; Newton's method stops after 50 at most.");
+  b.key(
+       "min_step", [](Options & o) -> auto& { return o.exact.min_step; })
+      .above(0)
+      .below(1)
+      .says("Method exact with `stiffness`: smallest step on the way to the stop.");
+  b.check(check_rod_shaping);
+  return b.take();
+}
+
 }  // namespace
 
 const BlockSet& step_blocks() {
   static const BlockSet set{
       "steps",
       "Steps in order; `kind` says what is done.",
-      {make_form_finding(), make_mesh(), make_equilibrium(), make_tuning(), make_modal()},
-      {"buckling", "collapse", "rod_shaping"}};
+      {make_form_finding(), make_mesh(), make_equilibrium(), make_tuning(), make_modal(), make_rod_shaping()},
+      {"buckling", "collapse"}};
   return set;
 }
 

@@ -69,12 +69,11 @@ bool is_line_with_state(Member member) {
 
 Names::Names(const Deck& deck, const Node& root) : root_(root) {
   const Node* elements = root.at({"model", "elements"});
-  is_reflector_ = root.find("reflector") != nullptr;
+  is_reflector_ = root.find("reflector") != nullptr && deck.rod_umbrella() == nullptr;
   if (is_reflector_) {
     for (const auto& [name, member] : reflector_groups()) element_groups_.push_back(name);
-    if (deck.reflector)
-      n_struts_ = deck.reflector->struts > 0 ? deck.reflector->struts : 3 * deck.reflector->rings;
-    if (deck.reflector && !deck.reflector->diagonals) optional_group_ = "diagonals";
+    if (deck.truss()) n_struts_ = deck.truss()->struts > 0 ? deck.truss()->struts : 3 * deck.truss()->rings;
+    if (deck.truss() && !deck.truss()->diagonals) optional_group_ = "diagonals";
   } else if (elements != nullptr && root.at({"model", "mesh"}) == nullptr) {
     element_groups_ = keys(elements);
   } else {

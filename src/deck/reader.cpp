@@ -161,6 +161,7 @@ void Reader::check_missing(const Block& block, const Node& node) {
   std::vector<std::string> missing, expected;
   for (const auto& keyword : block.keywords) {
     if (!keyword.is_required || node.find(keyword.name) != nullptr) continue;
+    if (keyword.spared && keyword.spared(node)) continue;
     missing.push_back(keyword.name);
     expected.push_back(fmt::format("{}: {}", keyword.name, keyword.expectation()));
   }

@@ -49,6 +49,8 @@ class Reader {
   std::optional<std::vector<std::string>> names(const Keyword& keyword, const Node& node);
   std::optional<Vec3> vector(const Keyword& keyword, const Node& node);
   std::optional<std::array<double, 2>> pair(const Keyword& keyword, const Node& node);
+  /// One number is a list of one.
+  std::optional<std::vector<double>> numbers(const Keyword& keyword, const Node& node);
   /// Whether the node has the form; complains if not.
   bool expect(Node::Kind kind, const Keyword& keyword, const Node& node);
 

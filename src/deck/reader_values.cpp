@@ -131,6 +131,23 @@ std::optional<std::array<double, 2>> Reader::pair(const Keyword& keyword, const 
   return std::array{*first, *second};
 }
 
+std::optional<std::vector<double>> Reader::numbers(const Keyword& keyword, const Node& node) {
+  std::vector<double> result;
+  if (node.is_sequence() && node.items.empty()) {
+    wrong_value(keyword, node, "is an empty list");
+    return {};
+  }
+  const std::vector<Node> one{node};
+  bool complete = true;
+  for (const Node& item : node.is_sequence() ? node.items : one) {
+    const auto value = number(keyword, item);
+    complete = complete && value.has_value();
+    result.push_back(value.value_or(0));
+  }
+  if (!complete) return {};
+  return result;
+}
+
 void Reader::refer(const std::string& kind, const Node& node) {
   if (!kind.empty()) references_.push_back({kind, node.text, node.place, node.note, context()});
 }

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <deck/keywords.hpp>
 #include <deck/topics.hpp>
 #include <nlohmann/json.hpp>
 #include <tautline/deck/deck.hpp>
@@ -97,6 +98,12 @@ Json value_schema(const Keyword& keyword) {
       return directions_schema();
     case Type::pair:
       return pair_schema(keyword);
+    case Type::numbers: {
+      const Json number = number_schema(keyword, "number");
+      return {{"anyOf", Json::array({number, list_of(number)})}};
+    }
+    case Type::points:
+      return list_of(tuple_of(number_schema(keyword, "number"), 2));
     case Type::releases:
       return releases_schema();
     case Type::edges:
@@ -135,11 +142,24 @@ Json block_schema(const Block& block) {
     Json value = value_schema(keyword);
     value["description"] = description(keyword);
     properties[keyword.name] = std::move(value);
-    if (keyword.is_required) required.push_back(keyword.name);
+    if (keyword.is_required && !keyword.spared) required.push_back(keyword.name);
   }
   Json result{{"type", "object"}, {"additionalProperties", false}, {"properties", std::move(properties)}};
   if (!required.empty()) result["required"] = std::move(required);
   return result;
+}
+
+/// What each kind of structure needs at the top level besides what all need.
+Json structures() {
+  Json all = Json::array();
+  for (const auto& kind : reflector_blocks().kinds()) {
+    Json entry{{"properties", {{"reflector", {{"properties", {{"kind", {{"const", kind}}}}}}}}}};
+    entry["required"] = {"reflector"};
+    if (!is_complete_structure(kind)) entry["required"] = {"reflector", "sections", "groups"};
+    all.push_back(std::move(entry));
+  }
+  all.push_back({{"required", {"model", "sections", "groups"}}});
+  return all;
 }
 
 }  // namespace
@@ -147,7 +167,7 @@ Json block_schema(const Block& block) {
 std::string schema() {
   Json result{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Tautline deck"}};
   result.update(block_schema(root_blocks().alternatives.front()));
-  result["oneOf"] = Json::array({{{"required", {"reflector"}}}, {{"required", {"model"}}}});
+  result["oneOf"] = structures();
   result["$defs"]["parameter"] = {
       {"type", "string"}, {"pattern", R"(\$\{[^}]+\})"}, {"description", "A parameter, ${name}."}};
   return result.dump(2) + "\n";

@@ -11,12 +11,13 @@ namespace tautline::deck {
 
 namespace {
 
-const std::array<std::pair<const char*, const char*>, 4>& table() {
-  static const std::array<std::pair<const char*, const char*>, 4> decks{
+const std::array<std::pair<const char*, const char*>, 5>& table() {
+  static const std::array<std::pair<const char*, const char*>, 5> decks{
       {{"perimeter-truss", starting_perimeter_truss},
        {"net", starting_net},
        {"membrane", starting_membrane},
-       {"frame", starting_frame}}};
+       {"frame", starting_frame},
+       {"rod-umbrella", starting_rod_umbrella}}};
   return decks;
 }
 
@@ -31,7 +32,7 @@ std::vector<std::string> starting_deck_kinds() {
 std::string starting_deck(const std::string& kind) {
   for (const auto& [name, text] : table())
     if (name == kind) return text;
-  const bool planned = kind == "umbrella" || kind == "rod-umbrella";
+  const bool planned = kind == "umbrella";
   Diagnostic diagnostic;
   diagnostic.where.file = "new";
   diagnostic.message = planned ? fmt::format("kind \"{}\" is not available in this version", kind)

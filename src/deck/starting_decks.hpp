@@ -8,5 +8,6 @@ extern const char* const starting_perimeter_truss;
 extern const char* const starting_net;
 extern const char* const starting_membrane;
 extern const char* const starting_frame;
+extern const char* const starting_rod_umbrella;
 
 }  // namespace tautline::deck

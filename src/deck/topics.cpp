@@ -34,6 +34,10 @@ std::string type_text(const Keyword& keyword) {
       return "word or list";
     case Type::pair:
       return "number or [first, second]";
+    case Type::numbers:
+      return "number or list of numbers";
+    case Type::points:
+      return "[[x, y], ...]";
     case Type::releases:
       return "word or list";
     case Type::edges:

@@ -141,6 +141,9 @@ Table comparison(const std::vector<std::string>& directories) {
   add_figure(table, runs, "mass [kg]", of_model("mass"));
   add_surface_rows(table, runs);
   add_group_rows(table, runs);
+  add_figure(
+      table, runs, "error along the rod, RMS [mm]",
+      [](const Json& run) -> const Json& { return last_of(run, "rod_error_rms"); }, 1e3);
   add_list_rows(table, runs, "frequencies", "frequency {} [Hz]", 6);
   add_list_rows(table, runs, "factors", "buckling load factor {}", 3);
   add_figure(table, runs, "critical load factor",

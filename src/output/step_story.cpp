@@ -37,13 +37,20 @@ constexpr std::array surface_quantities{
     Quantity{"gain_loss_db", "gain loss", "dB"},
     Quantity{"gain_loss_half_path_db", "gain loss, half path length", "dB"}};
 
-constexpr std::array step_quantities{Quantity{"dofs", "degrees of freedom", ""},
-                                     Quantity{"mass", "mass", "kg"},
-                                     Quantity{"newton_iterations", "Newton iterations", ""},
-                                     Quantity{"out_of_balance", "largest out of balance", "N"},
-                                     Quantity{"condition_number", "condition number", ""},
-                                     Quantity{"critical_lambda", "critical load factor", "", 1, 5},
-                                     Quantity{"bifurcation_lambda", "load factor of bifurcation", "", 1, 5}};
+constexpr std::array step_quantities{
+    Quantity{"dofs", "degrees of freedom", ""},
+    Quantity{"mass", "mass", "kg"},
+    Quantity{"newton_iterations", "Newton iterations", ""},
+    Quantity{"out_of_balance", "largest out of balance", "N"},
+    Quantity{"condition_number", "condition number", ""},
+    Quantity{"critical_lambda", "critical load factor", "", 1, 5},
+    Quantity{"rod_error_rms", "RMS along the rod", "mm", 1e3},
+    Quantity{"rod_error_max", "largest deviation", "mm", 1e3},
+    Quantity{"rod_error_max_at", "at length", "m"},
+    Quantity{"rod_error_rms_axial", "RMS along the axis", "mm", 1e3},
+    Quantity{"least_stability", "least eigenvalue of stability", ""},
+    Quantity{"contraction_rate", "contraction of the published iteration", ""},
+    Quantity{"bifurcation_lambda", "load factor of bifurcation", "", 1, 5}};
 
 /// Members of a step that are told elsewhere: in the heading or in the table of times.
 constexpr std::array told_elsewhere{"name",         "kind",    "status",         "reason",
@@ -89,7 +96,7 @@ Chapter tell_step(const Json& step, double mass) {
   if (const auto seconds = number(member(step, "wall_seconds"))) chapter.time = show(seconds, "s", 1, 3);
   for (Table& table : std::array{convergence_table(step), stage_table(member(step, "stages")),
                                  pass_table(member(step, "iterations")), mode_table(step, mass),
-                                 buckling_table(step), path_table(member(step, "path"))})
+                                 buckling_table(step), rod_table(step), path_table(member(step, "path"))})
     if (!table.rows.empty()) chapter.tables.push_back(std::move(table));
   return chapter;
 }

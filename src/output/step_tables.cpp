@@ -1,6 +1,7 @@
 #include "output/detail/step_tables.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include <fmt/format.h>
@@ -103,6 +104,16 @@ Json component(const Json& list, std::size_t index) {
   return values;
 }
 
+/// What is below rounding beside the largest entry as 0.
+Json without_rounding(const Json& list) {
+  double largest = 0;
+  for (const auto& value : list) largest = std::max(largest, std::abs(number(value).value_or(0)));
+  Json result = list;
+  for (auto& value : result)
+    if (std::abs(number(value).value_or(0)) < 1e-12 * largest) value = 0;
+  return result;
+}
+
 }  // namespace
 
 std::vector<Table> group_tables(const Json& groups) {
@@ -202,6 +213,29 @@ Table buckling_table(const Json& step) {
   add_list(table, "load factor", member(step, "factors"), 5);
   add_list(table, "critical load [N]", member(step, "critical_loads"), 4);
   add_list(table, "residual", member(step, "residuals"), 3);
+  return table;
+}
+
+Table rod_table(const Json& step) {
+  /// Figures of nodes 1 to m, with that of the root before them.
+  const auto from_root = [&](const Json& root, const char* name, double factor = 1) {
+    Json list = Json::array({root});
+    for (const auto& value : member(step, name))
+      list.push_back(value.is_number() ? Json(factor * value.get<double>()) : Json());
+    return list;
+  };
+  Table table{"Nodes of the rod", {"node"}, {}};
+  const Json& root = member(step, "root");
+  if (root.is_null()) return table;
+  const Json x = from_root(member(root, "X"), "X");
+  for (std::size_t k = 0; k < x.size(); ++k) table.rows.push_back({fmt::format("{}", k)});
+  add_list(table, "X [m]", x, 5);
+  add_list(table, "Y [m]", from_root(member(root, "Y"), "Y"), 5);
+  add_list(table, "theta [rad]", from_root(member(root, "theta"), "theta"), 4);
+  add_list(table, "moment [N m]", without_rounding(member(member(step, "moments"), "II")), 5);
+  add_list(table, "cable pulls [N]", from_root(Json(), "reaction"), 5);
+  add_list(table, "strain [%]", from_root(Json(), "strain", 100), 4);
+  add_list(table, "E F [N]", from_root(Json(), "stiffness"), 5);
   return table;
 }
 

@@ -43,6 +43,7 @@ std::vector<Fact> headline(const Json& results) {
   add(facts, "surface error, RMS", member(surface, "rms"), "mm", 1e3);
   add(facts, "RMS from the best fit", member(surface, "rms_best_fit"), "mm", 1e3);
   add(facts, "gain loss", member(surface, "gain_loss_db"), "dB");
+  add(facts, "error along the rod, RMS", last_of(results, "rod_error_rms"), "mm", 1e3);
   add_first(facts, "first frequency", last_of(results, "frequencies"), "Hz");
   add_first(facts, "buckling load factor", last_of(results, "factors"), "");
   add(facts, "critical load factor", last_of(results, "critical_lambda"));

@@ -95,6 +95,8 @@ class Summary {
     say(name.empty() ? "step" : name, parts);
     stages(member(step, "stages"));
     const std::string indent(label_, ' ');
+    if (const auto nodes = detail::rod_table(step); !nodes.rows.empty())
+      append(detail::table_lines(nodes, most_passes), indent);
     if (const auto passes = detail::pass_table(member(step, "iterations")); !passes.rows.empty())
       append(detail::table_lines(passes, most_passes), indent);
   }

@@ -1,5 +1,6 @@
 #include <tautline/output/tables.hpp>
 
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -16,7 +17,7 @@ namespace {
 /// Rows of text in memory, written at the end: 10^5 rows are a few megabytes.
 class Table {
  public:
-  explicit Table(const char* header) : text_(header) { text_ += '\n'; }
+  explicit Table(const std::string& header) : text_(header) { text_ += '\n'; }
   template <typename... Args>
   void row(fmt::format_string<Args...> format, Args&&... args) {
     fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
@@ -168,6 +169,20 @@ void write_shells(const std::string& path, const model::Model& model, const mode
               groups[static_cast<std::size_t>(model.shells[i].group)], node_cells(model.shells[i].nodes),
               f.membrane[0], f.membrane[1], f.membrane[2], f.moment[0], f.moment[1], f.moment[2], f.shear[0],
               f.shear[1]);
+  }
+  table.write(path);
+}
+
+void write_columns(const std::string& path, const std::vector<std::string>& header,
+                   const std::vector<std::vector<double>>& columns) {
+  require_size(path, "columns", columns.size(), header.size());
+  for (const auto& column : columns) require_size(path, "rows", column.size(), columns.front().size());
+  Table table(fmt::format("{}", fmt::join(header, ",")));
+  for (std::size_t i = 0; !columns.empty() && i < columns.front().size(); ++i) {
+    std::vector<std::string> cells;
+    for (const auto& column : columns)
+      cells.push_back(std::isnan(column[i]) ? "" : fmt::format("{:.17g}", column[i]));
+    table.row("{}", fmt::join(cells, ","));
   }
   table.write(path);
 }

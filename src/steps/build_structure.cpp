@@ -162,7 +162,7 @@ void check_sections(const model::Model& model, const deck::Deck& deck) {
       throw ModelError(fmt::format("group \"{}\": section \"{}\" is for another kind of element", group.name,
                                    found->second.section));
   }
-  if (deck.reflector) return;  // a part of a reflector may be switched off while the deck still describes it
+  if (deck.truss()) return;  // a part of a reflector may be switched off while the deck still describes it
   for (const auto& [name, options] : deck.groups) {
     const int group = model.find_group(name);
     const auto in = [&](const auto& elements) {
@@ -312,8 +312,8 @@ model::Load make_load(const model::Model& model, const model::LoadOptions& optio
 
 model::Model build_structure(const deck::Deck& deck) {
   model::Model model;
-  if (deck.reflector) {
-    model = reflector::make_perimeter_truss(*deck.reflector);
+  if (deck.truss()) {
+    model = reflector::make_perimeter_truss(*deck.truss());
   } else {
     declare_groups(model, deck);
     add_inline(model, *deck.model, deck);

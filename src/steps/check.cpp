@@ -25,6 +25,16 @@ std::string model_text(const model::Model& model) {
   return text;
 }
 
+std::string umbrella_text(const rod::Umbrella& umbrella) {
+  const int last = umbrella.rod.links() - 1;
+  return fmt::format(
+      "structure  {} rods of {} links, {:.4g} m long from radius {:.4g} m; their ends belong at {:.4g} m, "
+      "height "
+      "{:.4g} m\n",
+      umbrella.cables.rods, umbrella.rod.links(), umbrella.rod.lengths.sum(), umbrella.rod.root.x,
+      umbrella.target_x[last], umbrella.target_y[last]);
+}
+
 std::string steps_text(const deck::Deck& deck) {
   std::string text = "steps     ";
   for (const auto& step : deck.steps) text += fmt::format(" {}", step.name);
@@ -58,8 +68,10 @@ std::string check(const deck::Deck& deck) {
   Progress silent;
   Context context(deck, "", false, silent);
   foretell_mechanisms(context);
-  return fmt::format("{}\n{}{}nothing found that would keep it from being solved\n", deck.title,
-                     model_text(context.structure), steps_text(deck));
+  const std::string structure =
+      context.umbrella ? umbrella_text(*context.umbrella) : model_text(context.structure);
+  return fmt::format("{}\n{}{}nothing found that would keep it from being solved\n", deck.title, structure,
+                     steps_text(deck));
 }
 
 }  // namespace tautline::steps

@@ -17,14 +17,18 @@ namespace tautline::steps {
 Context::Context(const deck::Deck& the_deck, std::string directory, bool pictures, Progress& the_progress)
     : deck(the_deck),
       progress(the_progress),
-      structure(build_structure(the_deck)),
       directory_(std::move(directory)),
       pictures_(pictures),
       root_(la::rank() == 0),
       fields_(directory_, la::rank(), la::size()) {
+  if (deck.rod_umbrella() != nullptr) {
+    umbrella = rod::make_umbrella(*deck.rod_umbrella());
+    return;
+  }
+  structure = build_structure(deck);
   model::validate(structure);
   model::find_directors(structure);
-  if (deck.reflector) surface = reflector::make_paraboloid(*deck.reflector);
+  if (deck.truss()) surface = reflector::make_paraboloid(*deck.truss());
 }
 
 assembly::System& Context::system() {
@@ -44,6 +48,10 @@ void Context::set_system(model::Model mesh) {
 }
 
 void Context::note_model() {
+  if (umbrella) {
+    results["model"] = umbrella_json(*umbrella);
+    return;
+  }
   const auto& model = has_system() ? system_->model() : structure;
   results["model"] = model_json(model, has_system() ? system_->n_dofs() : 0);
   results["model"]["mass_by_group"] = model::mass_by_group(model);

@@ -18,6 +18,7 @@
 #include <tautline/output/pictures.hpp>
 #include <tautline/reflector/paraboloid.hpp>
 #include <tautline/reflector/surface_error.hpp>
+#include <tautline/rod/umbrella.hpp>
 
 namespace tautline::steps {
 
@@ -29,8 +30,9 @@ class Context {
 
   const deck::Deck& deck;
   Progress& progress;
-  model::Model structure;                        ///< as described; after form-finding, as found
+  model::Model structure;  ///< as described; after form-finding, as found; empty for an umbrella
   std::optional<reflector::Paraboloid> surface;  ///< of a reflector
+  std::optional<rod::Umbrella> umbrella;         ///< of a rod-umbrella
   std::string step_name;                         ///< of the step in hand
   std::vector<std::string> acting_loads;         ///< by name, since the last equilibrium
   Json results;                                  ///< the whole results.json
@@ -85,6 +87,7 @@ Json run_step(Context& context, const MeshOptions& options);
 Json run_step(Context& context, const EquilibriumOptions& options);
 Json run_step(Context& context, const TuningStepOptions& options);
 Json run_step(Context& context, const ModalOptions& options);
+Json run_step(Context& context, const RodShapingOptions& options);
 
 /// Follows the path of a stage that was begun, with progress on the live line; stops at lambda = k /
 /// increments at least and calls `converged(lambda)` wherever it comes to rest.

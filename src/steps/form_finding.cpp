@@ -91,7 +91,7 @@ void take_positions_and_tensions(model::Model& structure, const Extract& extract
 void complete_reflector(Context& context, const Extract& extract,
                         const formfinding::ForceDensityResult& found) {
   auto& structure = context.structure;
-  const double gap = context.deck.reflector->gap;
+  const double gap = context.deck.truss()->gap;
   std::vector<double> pull(structure.nodes.size(), 0.0);
   for (std::size_t i = 0; i < extract.nodes.size(); ++i)
     pull[extract.nodes[i]] = -found.residual_z[static_cast<int>(i)];

@@ -95,7 +95,8 @@ std::string run_and_record(Context& context, const Step& step) {
 }
 
 void write_tables(Context& context, const assembly::System::NodalForces& reactions) {
-  if (!context.deck.output.tables) return;
+  if (!context.deck.output.tables || context.umbrella)
+    return;  // an umbrella's tables are written by its steps
   output::write_form_finding_nodes(context.path("form_finding_nodes.csv"), context.structure);
   if (!context.has_system()) return;
   const auto& system = context.system();

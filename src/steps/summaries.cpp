@@ -92,6 +92,19 @@ Json model_json(const model::Model& model, int dofs) {
   return entry;
 }
 
+Json umbrella_json(const rod::Umbrella& umbrella) {
+  const int rods = umbrella.cables.rods, links = umbrella.rod.links();
+  return {{"nodes", rods * (links + 1)},
+          {"dofs", 0},
+          {"cables", rods * links},
+          {"beams", rods * links},
+          {"membranes", 0},
+          {"shells", 0},
+          {"mass", nullptr},
+          {"rods", rods},
+          {"links", links}};
+}
+
 reflector::SurfaceSample surface_sample(Context& context) {
   const auto& model = context.system().model();
   reflector::SurfaceSample sample;
@@ -101,9 +114,9 @@ reflector::SurfaceSample surface_sample(Context& context) {
   for (const int i : cloth.membranes)
     for (const auto& triangle : model.membranes[i].nodes.triangles()) sample.triangles.push_back(triangle);
   sample.net_nodes = model.select("front_net_nodes").nodes;
-  const double radius = context.deck.reflector->evaluation_radius;
+  const double radius = context.deck.truss()->evaluation_radius;
   sample.radius = std::isnan(radius) ? 0 : radius;
-  sample.frequency = context.deck.reflector->frequency;
+  sample.frequency = context.deck.truss()->frequency;
   return sample;
 }
 

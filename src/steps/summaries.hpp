@@ -23,6 +23,8 @@ double on_grid(double value, double size);
 
 Json groups_json(const std::map<std::string, model::GroupSummary>& groups);
 Json surface_json(const reflector::SurfaceError& error);
+/// Of all rods: one beam for each link, one cable between neighbours at each node.
+Json umbrella_json(const rod::Umbrella& umbrella);
 Json model_json(const model::Model& model, int dofs);
 
 /// The cloth and the net nodes of a reflector in the system's present state.

@@ -16,14 +16,14 @@ Deck read_good(const std::string& name) {
 
 TEST(Deck, ReadsTheReflectorOfTheMainDeck) {
   const Deck deck = read_deck(main_deck);
-  ASSERT_TRUE(deck.reflector);
+  ASSERT_TRUE(deck.truss());
   EXPECT_FALSE(deck.model);
   EXPECT_EQ(deck.title, "12 m perimeter-truss reflector");
-  EXPECT_EQ(deck.reflector->aperture, 12);
-  EXPECT_EQ(deck.reflector->clearance, 1.125);
-  EXPECT_EQ(deck.reflector->rings, 10);
-  EXPECT_EQ(deck.reflector->frequency, 12e9);
-  EXPECT_TRUE(deck.reflector->diagonals);
+  EXPECT_EQ(deck.truss()->aperture, 12);
+  EXPECT_EQ(deck.truss()->clearance, 1.125);
+  EXPECT_EQ(deck.truss()->rings, 10);
+  EXPECT_EQ(deck.truss()->frequency, 12e9);
+  EXPECT_TRUE(deck.truss()->diagonals);
 }
 
 TEST(Deck, ReadsSectionsAndGroupsOfTheMainDeck) {
@@ -121,6 +121,37 @@ TEST(Deck, ReadsTwentyThousandNodes) {
   EXPECT_EQ(parse_deck(text, "deck.yaml").model->elements[0].connectivity.size(), 19999U);
 }
 
+TEST(Deck, ReadsAnUmbrellaOfRodsWithoutSections) {
+  const Deck deck = read_good("rod_umbrella_all_keys.yaml");
+  ASSERT_NE(deck.rod_umbrella(), nullptr);
+  EXPECT_EQ(deck.truss(), nullptr);
+  const auto& umbrella = *deck.rod_umbrella();
+  EXPECT_EQ(umbrella.rods, 24);
+  EXPECT_EQ(umbrella.lengths, (std::vector<double>{2, 1.5, 1}));
+  EXPECT_EQ(umbrella.bending_stiffness, std::vector<double>{2000});
+  EXPECT_EQ(umbrella.root_offset, 0.05);
+  EXPECT_EQ(umbrella.meridian.kind, rod::MeridianKind::parabola);
+  EXPECT_EQ(umbrella.meridian.coefficient, 0.1);
+  EXPECT_EQ(umbrella.cable.law, rod::CableLaw::bilinear);
+  EXPECT_EQ(umbrella.cable.knee_strain, 0.02);
+  using Options = steps::RodShapingOptions;
+  const auto& published = std::get<Options>(deck.steps.at(0).options);
+  EXPECT_EQ(published.method, Options::Method::cantilevers);
+  EXPECT_EQ(published.cantilevers.shortening, rod::Shortening::as_published);
+  EXPECT_EQ(published.cantilevers.method, rod::CantileverMethod::successive);
+  EXPECT_EQ(published.max_iterations, 500);
+  EXPECT_EQ(std::get<Options>(deck.steps.at(1).options).exact.form, rod::ExactForm::nodes_on_target);
+  EXPECT_EQ(std::get<Options>(deck.steps.at(2).options).stiffness, (std::vector<double>{300, 200, 100}));
+}
+
+TEST(Deck, ReadsAMeridianOfPoints) {
+  const Deck deck = read_good("rod_umbrella_points.yaml");
+  const auto& meridian = deck.rod_umbrella()->meridian;
+  EXPECT_EQ(meridian.kind, rod::MeridianKind::table);
+  EXPECT_EQ(meridian.x, (std::vector<double>{0, 0.5, 1, 2, 3}));
+  EXPECT_EQ(meridian.y, (std::vector<double>{0, 0.02, 0.1, 0.4, 0.9}));
+}
+
 class StartingDeck : public testing::TestWithParam<std::string> {};
 
 TEST_P(StartingDeck, IsValid) {
@@ -136,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, StartingDeck, testing::ValuesIn(starting_deck_ki
 });
 
 TEST(StartingDecks, UnknownKindsAreTold) {
-  for (const char* kind : {"umbrella", "rod-umbrella", "nett", ""}) {
+  for (const char* kind : {"umbrella", "rod-umbrela", "nett", ""}) {
     try {
       starting_deck(kind);
       FAIL() << kind;

@@ -34,7 +34,7 @@ TEST(Overrides, ChangeParameters) {
 }
 
 TEST(Overrides, ReachValuesByPathIndexAndName) {
-  EXPECT_EQ(with("reflector.gap=0.05").reflector->gap, 0.05);
+  EXPECT_EQ(with("reflector.gap=0.05").truss()->gap, 0.05);
   EXPECT_EQ(subdivisions(with("steps.1.subdivisions=2")), 2);
   EXPECT_EQ(subdivisions(with("steps.mesh.subdivisions=3")), 3);
   EXPECT_EQ(with("supports.held strut.fix=pinned").supports[0].fixed[3], false);
@@ -45,14 +45,14 @@ TEST(Overrides, ReachValuesByPathIndexAndName) {
 }
 
 TEST(Overrides, AddKeysAndBlocksThatHaveDefaults) {
-  EXPECT_FALSE(with("reflector.diagonals=false").reflector->diagonals);
+  EXPECT_FALSE(with("reflector.diagonals=false").truss()->diagonals);
   EXPECT_EQ(with("solver.max_iterations=7").solver.max_iterations, 7);
   EXPECT_FALSE(with("output.pictures=false").output.pictures);
   EXPECT_EQ(with("title=a=b").title, "a=b");
 }
 
 TEST(Overrides, ApplyInOrder) {
-  EXPECT_EQ(read_deck(main_deck, {"reflector.gap=0.1", "reflector.gap=0.2"}).reflector->gap, 0.2);
+  EXPECT_EQ(read_deck(main_deck, {"reflector.gap=0.1", "reflector.gap=0.2"}).truss()->gap, 0.2);
 }
 
 TEST(Overrides, TellWhatIsWrongWithThem) {

@@ -72,7 +72,19 @@ TEST(Schema, ChoosesByKind) {
   ASSERT_EQ(sections.size(), 16U);
   EXPECT_EQ(sections[0]["properties"]["kind"]["const"], "cable");
   const auto& steps = json["properties"]["steps"]["items"]["oneOf"];
-  EXPECT_EQ(steps.size(), 5U);
+  EXPECT_EQ(steps.size(), 6U);
+}
+
+TEST(Schema, AsksForSectionsUnlessTheReflectorIsComplete) {
+  const auto json = nlohmann::json::parse(schema());
+  EXPECT_EQ(json["required"], nlohmann::json::array({"steps"}));
+  std::map<std::string, nlohmann::json> required;
+  for (const auto& structure : json["oneOf"])
+    required[structure.value("/properties/reflector/properties/kind/const"_json_pointer, "model")] =
+        structure["required"];
+  EXPECT_EQ(required["model"], nlohmann::json({"model", "sections", "groups"}));
+  EXPECT_EQ(required["perimeter-truss"], nlohmann::json({"reflector", "sections", "groups"}));
+  EXPECT_EQ(required["rod-umbrella"], nlohmann::json::array({"reflector"}));
 }
 
 }  // namespace

@@ -315,5 +315,30 @@ TEST(Base64, MatchesTheStandardsExamples) {
   EXPECT_EQ(detail::base64("foobar"), "Zm9vYmFy");
 }
 
+TEST(Summary, TellsTheNodesOfABentRodFromTheRootOn) {
+  const Json results = Json::parse(R"({"status": "done", "steps": [{"name": "exact", "kind": "rod_shaping",
+    "status": "done", "rod_error_rms": 0.00125, "root": {"X": 0.25, "Y": 0.5, "theta": 0.125}, "X": [2.5], "Y": [1.5],
+    "theta": [0.75], "reaction": [62.5], "strain": [0.5], "stiffness": [null],
+    "moments": {"I": [256, 0], "II": [256, 1e-27]}}]})");
+  const std::string text = summary_text(results);
+  EXPECT_NE(text.find("RMS along the rod 1.250 mm"), std::string::npos) << text;
+  std::istringstream lines(text);
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream cells(line);
+    rows.emplace_back();
+    for (std::string cell; cells >> cell;) rows.back().push_back(cell);
+  }
+  using Cells = std::vector<std::string>;
+  EXPECT_EQ(std::count(rows.begin(), rows.end(),
+                       Cells({"0", "0.25000", "0.50000", "0.1250", "256", "-", "-", "-"})),
+            1)
+      << text;
+  EXPECT_EQ(std::count(rows.begin(), rows.end(),
+                       Cells({"1", "2.50000", "1.50000", "0.7500", "0", "62.500", "50", "-"})),
+            1)
+      << text;
+}
+
 }  // namespace
 }  // namespace tautline::output

@@ -1,5 +1,6 @@
 #include <tautline/output/tables.hpp>
 
+#include <cmath>
 #include <cstdlib>
 #include <sstream>
 
@@ -130,6 +131,13 @@ TEST(Tables, ErrorsNameTheFile) {
   EXPECT_NE(message.find("/dev/null/form.csv"), std::string::npos) << message;
   const auto short_response = message_of<LibraryError>([] { write_cables("c.csv", small_model(), {}); });
   EXPECT_NE(short_response.find("c.csv"), std::string::npos) << short_response;
+}
+
+TEST(Tables, ColumnsOfNumbersComeBackBitForBit) {
+  const TemporaryDirectory directory("tables_columns");
+  const std::string path = directory.file("rod.csv");
+  write_columns(path, {"s", "x"}, {{0, 1}, {std::nan(""), 1.0 / 3}});
+  EXPECT_EQ(contents(path), "s,x\n0,\n1,0.33333333333333331\n");
 }
 
 }  // namespace

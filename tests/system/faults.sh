@@ -76,6 +76,15 @@ case $1 in
     run 4 "$SOURCE/inputs/dish_4m.yaml" --set steps.form_finding.max_iterations=1
     valid "$out" not_converged
     ;;
+  rods_diverging)   # with equal stiffness the published iteration does not contract; Newton's method does not mind
+    sed 's|bending_stiffness: .*|bending_stiffness: 1000|' "$SOURCE/inputs/rod_umbrella_m4_l10.yaml" >"$WORK/deck.yaml"
+    run 4 "$WORK/deck.yaml" --set steps.as_published.solver=successive
+    valid "$out" not_converged
+    says "$out/results.json" '"reason": "step .*diverges'
+    run 0 "$WORK/deck.yaml"
+    run 3 "$WORK/deck.yaml" --set reflector.root_radius=0
+    says "$WORK/err" 'root_radius'
+    ;;
   unwritable)
     touch "$WORK/results"                           # a file where the directory should be
     run 5 "$SOURCE/inputs/frame.yaml"

@@ -21,6 +21,7 @@ examine 0 '{a:/steps/0/rms} * -3 ^ 2 / (1 + 2) - 2' 'reference: -8, absolute: 1e
 examine 0 'max({a:/steps/two/list} - 1)' 'reference: 3, relative: 0, origin: analytic'
 examine 0 'sum({a:/steps/two/passes/*/rms})' 'reference: 12, relative: 0, origin: analytic'
 examine 0 'size({a:nodes.csv#x?group=net&id<=2})' 'reference: 2, relative: 0, origin: analytic'
+examine 0 'size({a:nodes.csv#x?group=net&id>=2&id<=2})' 'reference: 1, relative: 0, origin: analytic'
 examine 0 'max({a:nodes.csv#x?within=5})' 'reference: 3, relative: 0, origin: analytic'
 examine 0 '{a:/steps/one/rms}' 'at_most: 2, origin: requirement'
 examine 1 '{a:/steps/one/rms}' 'at_most: 1.9, origin: requirement'

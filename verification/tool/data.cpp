@@ -85,10 +85,12 @@ double number(const Table& table, const std::vector<std::string>& row, const std
   return std::stod(row.at(found->second));
 }
 
-/// Whether a row fulfils "column=text" or "column<=number".
+/// Whether a row fulfils "column=text", "column<=number" or "column>=number".
 bool fulfils(const Table& table, const std::vector<std::string>& row, const std::string& condition) {
   if (const auto at = condition.find("<="); at != std::string::npos)
     return number(table, row, condition.substr(0, at)) <= std::stod(condition.substr(at + 2));
+  if (const auto at = condition.find(">="); at != std::string::npos)
+    return number(table, row, condition.substr(0, at)) >= std::stod(condition.substr(at + 2));
   const auto at = condition.find('=');
   const auto column = table.columns.find(condition.substr(0, at));
   if (at == std::string::npos || column == table.columns.end())

@@ -28,8 +28,8 @@ class Data {
   /// "/steps/tuning/surface/rms": a pointer into results.json; entries of a list are named by index, by
   /// `first` or `last`, by their "name", or by `*` for all of them.
   /// "cables.csv#tension?group=front_net&within=5": a column, with conditions on others. `within`: nodes, or
-  /// both ends of elements, no farther from the z axis than that, by nodes.csv. A condition "id<=10" compares
-  /// numbers.
+  /// both ends of elements, no farther from the z axis than that, by nodes.csv. Conditions "id<=10" and
+  /// "id>=10" compare numbers.
   Values find(const std::string& reference);
 
  private:

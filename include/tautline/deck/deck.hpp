@@ -6,23 +6,27 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <tautline/analysis/newton_options.hpp>
 #include <tautline/model/model_options.hpp>
 #include <tautline/output/output_options.hpp>
 #include <tautline/reflector/perimeter_truss_options.hpp>
+#include <tautline/rod/rod_options.hpp>
 #include <tautline/steps/step_options.hpp>
 
 namespace tautline::deck {
+
+/// The kinds of `reflector`.
+using Reflector = std::variant<reflector::PerimeterTrussOptions, rod::UmbrellaOptions>;
 
 struct Deck {
   std::string path;
   std::string sha256;  ///< of the file's bytes, lower-case hex
   std::string title;
   std::map<std::string, std::string> parameters;  ///< values in force, after --set
-  std::optional<reflector::PerimeterTrussOptions>
-      reflector;  ///< exactly one of reflector and model is present
+  std::optional<Reflector> reflector;             ///< exactly one of reflector and model is present
   std::optional<model::ModelOptions> model;
   std::map<std::string, model::MaterialOptions> materials;
   std::map<std::string, model::SectionOptions> sections;
@@ -32,6 +36,15 @@ struct Deck {
   std::vector<steps::Step> steps;
   output::OutputOptions output;
   analysis::NewtonOptions solver;
+
+  /// The reflector if it is a perimeter truss, or null.
+  const reflector::PerimeterTrussOptions* truss() const {
+    return reflector ? std::get_if<reflector::PerimeterTrussOptions>(&*reflector) : nullptr;
+  }
+  /// The reflector if it is an umbrella of rods, or null.
+  const rod::UmbrellaOptions* rod_umbrella() const {
+    return reflector ? std::get_if<rod::UmbrellaOptions>(&*reflector) : nullptr;
+  }
 };
 
 /// @brief Reads and checks a deck: syntax, keys, types, units, ranges, cross references between its blocks.

@@ -40,6 +40,7 @@ struct Curve {
   std::string label;
   std::vector<double> x, y;
   bool markers = true;
+  bool line = true;  ///< between the points
 };
 
 struct Chart {

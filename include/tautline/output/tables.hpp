@@ -32,6 +32,9 @@ void write_shells(const std::string& path, const model::Model& model, const mode
 /// springs.csv: id,group,node_1,node_2,fx,fy,fz,mx,my,mz; in the spring's axes; node_2 is empty for one to
 /// the ground
 void write_springs(const std::string& path, const model::Model& model, const model::Response& response);
+/// Any table of numbers: a header and columns of the same length, with 17 digits; NaN is an empty cell.
+void write_columns(const std::string& path, const std::vector<std::string>& header,
+                   const std::vector<std::vector<double>>& columns);
 /// reactions.csv: node,fx,fy,fz,mx,my,mz; nodes that carry none are left out [N], [N m]
 void write_reactions(const std::string& path, const model::Model& model, const Points& force,
                      const Points& moment);

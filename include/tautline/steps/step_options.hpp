@@ -13,6 +13,7 @@
 #include <tautline/formfinding/force_density_options.hpp>
 #include <tautline/model/subdivide.hpp>
 #include <tautline/reflector/tuning_options.hpp>
+#include <tautline/rod/rod_options.hpp>
 
 namespace tautline::steps {
 
@@ -64,8 +65,19 @@ struct ModalOptions {
   assembly::MassKind mass = assembly::MassKind::consistent;
 };
 
-using AnyStep =
-    std::variant<FormFindingOptions, MeshOptions, EquilibriumOptions, TuningStepOptions, ModalOptions>;
+/// `kind: rod_shaping`, on a rod-umbrella
+struct RodShapingOptions {
+  enum class Method { exact, cantilevers } method = Method::exact;
+  rod::ExactOptions exact;
+  rod::CantileverOptions cantilevers;
+  std::optional<double> tolerance;    ///< of the method; not given: its own default
+  std::optional<int> max_iterations;  ///< likewise
+  /// E_T F_k of cables that are given, with the rods turned to the stop; not given: cables are looked for [N]
+  std::optional<std::vector<double>> stiffness;
+};
+
+using AnyStep = std::variant<FormFindingOptions, MeshOptions, EquilibriumOptions, TuningStepOptions,
+                             ModalOptions, RodShapingOptions>;
 
 struct Step {
   std::string kind;  ///< as written in the deck

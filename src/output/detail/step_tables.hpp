@@ -19,6 +19,8 @@ Table convergence_table(const nlohmann::ordered_json& step);
 /// @param mass of the structure [kg], to give effective masses as shares of it; 0: unknown
 Table mode_table(const nlohmann::ordered_json& step, double mass);
 Table buckling_table(const nlohmann::ordered_json& step);
+/// The nodes of a bent rod with their cables.
+Table rod_table(const nlohmann::ordered_json& step);
 Table path_table(const nlohmann::ordered_json& path);
 
 }  // namespace tautline::output::detail

@@ -42,7 +42,7 @@ bool shown(double value, bool logarithmic) {
 /// The points of a curve that can be drawn.
 Curve drawable(const Chart& chart, const Curve& curve) {
   if (curve.x.size() != curve.y.size()) throw std::runtime_error("a curve needs as many x as y");
-  Curve result{curve.label, {}, {}, curve.markers};
+  Curve result{curve.label, {}, {}, curve.markers, curve.line};
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
     if (!shown(curve.x[i], chart.log_x) || !shown(curve.y[i], chart.log_y)) continue;
     result.x.push_back(curve.x[i]);
@@ -113,7 +113,7 @@ void add_curve(vtkChartXY* target, const Curve& curve, std::size_t index) {
   table->AddColumn(y);
   static constexpr int markers[] = {vtkPlotPoints::CIRCLE, vtkPlotPoints::SQUARE, vtkPlotPoints::DIAMOND,
                                     vtkPlotPoints::PLUS, vtkPlotPoints::CROSS};
-  auto* plot = vtkPlotPoints::SafeDownCast(target->AddPlot(vtkChart::LINE));
+  auto* plot = vtkPlotPoints::SafeDownCast(target->AddPlot(curve.line ? vtkChart::LINE : vtkChart::POINTS));
   plot->SetInputData(table, 0, 1);
   const auto colour = curve_colour(index);
   plot->SetColor(colour[0], colour[1], colour[2], 255);
