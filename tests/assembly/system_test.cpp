@@ -69,8 +69,8 @@ TEST(System, NeedsNoIterationWhereItIsInEquilibrium) {
   EXPECT_LT((system.reactions().force[0] - Vec3(-50, 0, 0)).norm(), 1e-10);
 }
 
-/// Two cables in a line, the left one 1 mm short, the right one 1 cm too long: pushed to the left the carriage
-/// crosses the gap in which neither pulls.
+/// Two cables in a line, the left one 1 mm short, the right one 1 cm too long: pushed to the left the
+/// carriage crosses the gap in which neither pulls.
 TEST(System, CrossesTheGapBetweenTwoSlackCables) {
   for (const double force : {-40.0, -5.0, 5.0}) {
     model::Model model;

@@ -13,9 +13,8 @@ namespace {
 
 std::vector<Specimen> specimens() {
   std::vector<Specimen> all;
-  for (const auto& of_element :
-       {cable_specimens(), membrane_specimens(), beam_specimens(), catenary_specimens(), spring_specimens(),
-        shell_specimens()})
+  for (const auto& of_element : {cable_specimens(), membrane_specimens(), beam_specimens(),
+                                 catenary_specimens(), spring_specimens(), shell_specimens()})
     all.insert(all.end(), of_element.begin(), of_element.end());
   return all;
 }

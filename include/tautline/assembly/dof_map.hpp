@@ -11,8 +11,8 @@
 namespace tautline::assembly {
 
 /// A node has one block for its displacement and, where a beam or shell is attached, a second for its
-/// rotation. A follower of a link has no displacement of its own; its rotation block, if its rotation is free,
-/// holds that, or the angles about its hinge.
+/// rotation. A follower of a link has no displacement of its own; its rotation block, if its rotation is
+/// free, holds that, or the angles about its hinge.
 struct DofMap {
   std::vector<int> displacement_block;  ///< of each node; -1 if it follows
   std::vector<int> rotation_block;      ///< of each node; -1 if it has none
@@ -51,7 +51,9 @@ inline bool uses_rotations(const model::Model& model, const model::MassElement& 
 template <class Element>
 std::vector<int> unknowns_of(const model::Model& model, const DofMap& map, const Element& element) {
   std::vector<int> blocks;
-  const auto add = [&](const std::vector<int>& more) { blocks.insert(blocks.end(), more.begin(), more.end()); };
+  const auto add = [&](const std::vector<int>& more) {
+    blocks.insert(blocks.end(), more.begin(), more.end());
+  };
   const bool rotations = uses_rotations(model, element);
   for (const int node : element.nodes) {
     add(map.displacement_unknowns[static_cast<std::size_t>(node)]);

@@ -54,15 +54,15 @@ class Kinematics {
 
   /// Links whose follower is `node`, or -1.
   int link_of(int node) const noexcept { return link_of_[static_cast<std::size_t>(node)]; }
-  /// Part of the second derivative that a force and moment on a link's follower add, order (leader's spin, hinge
-  /// angles); see the theory page.
+  /// Part of the second derivative that a force and moment on a link's follower add, order (leader's spin,
+  /// hinge angles); see the theory page.
   Mat<6> second_derivative(int link, const Vec3& force, const Vec3& moment) const;
   /// From the leader of a link to its follower, at present [m].
   const Vec3& lever(int link) const { return arms_[static_cast<std::size_t>(link)].lever; }
 
  private:
   struct Arm {
-    Vec3 lever;              ///< from leader to follower, at present
+    Vec3 lever;                ///< from leader to follower, at present
     std::array<Vec3, 3> axis;  ///< hinge axes at present
   };
 

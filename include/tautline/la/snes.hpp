@@ -23,8 +23,8 @@ struct SnesCallbacks {
   /// After each iteration (0 = the start): |increment| is 0 at the start.
   std::function<Verdict(int iteration, const Vector& f, const Vector& increment)> verdict;
   /// Factor for the full Newton step, in (0, 1]: given the directional derivatives it may ask for more of
-  /// them. slope(t) = -f(x + t dx) . dx, evaluated anew at each call. `stiffened`: the tangent was singular and
-  /// the step was made with a stiffer one, so that its length means little.
+  /// them. slope(t) = -f(x + t dx) . dx, evaluated anew at each call. `stiffened`: the tangent was singular
+  /// and the step was made with a stiffer one, so that its length means little.
   std::function<double(const std::function<double(double)>& slope, double slope_0, bool stiffened)>
       line_search;
 };

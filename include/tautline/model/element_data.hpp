@@ -38,7 +38,8 @@ struct CableData {
 inline CableData cable_data(const Model& model, const Cable& cable) {
   const Group& group = model.groups[cable.group];
   const double thermal = group.thermal_expansion * group.temperature_change;
-  const double strain = thermal == 0 ? cable.initial_strain : (cable.initial_strain - thermal) / (1 + thermal);
+  const double strain =
+      thermal == 0 ? cable.initial_strain : (cable.initial_strain - thermal) / (1 + thermal);
   return {{group.cable.axial_stiffness, strain, group.kind == ElementKind::bar},
           reference_nodes<2>(model, cable.nodes)};
 }

@@ -26,13 +26,13 @@ struct MaterialOptions {
   double thermal_expansion = 0;  ///< [1/K]
 };
 
-/// Section of a cable, bar or catenary: axial stiffness and mass follow from material and diameter or area, or
-/// are given.
+/// Section of a cable, bar or catenary: axial stiffness and mass follow from material and diameter or area,
+/// or are given.
 struct AxialSectionOptions {
-  std::string material;                   ///< empty if axial_stiffness is given
-  std::optional<double> diameter, area;   ///< [m], [m^2]
-  std::optional<double> axial_stiffness;  ///< E A [N]
-  std::optional<double> mass_per_length;  ///< [kg/m]
+  std::string material;                     ///< empty if axial_stiffness is given
+  std::optional<double> diameter, area;     ///< [m], [m^2]
+  std::optional<double> axial_stiffness;    ///< E A [N]
+  std::optional<double> mass_per_length;    ///< [kg/m]
   std::optional<double> thermal_expansion;  ///< of the material, if not given [1/K]
 };
 struct CableSectionOptions : AxialSectionOptions {};
@@ -150,8 +150,8 @@ struct EndRelease {
 
 /// What a deck says of a group of elements (by section), or a named set of nodes (by `nodes`).
 struct GroupOptions {
-  std::string section;             ///< empty for a pure node set
-  std::vector<std::string> nodes;  ///< node set: names of inline nodes
+  std::string section;                            ///< empty for a pure node set
+  std::vector<std::string> nodes;                 ///< node set: names of inline nodes
   std::vector<std::array<std::string, 2>> edges;  ///< or sides of facets, by their nodes
   // A cable's initial state: at most one of the four; a group whose tension form-finding supplies has none.
   std::optional<double> tension;            ///< [N]
@@ -164,9 +164,10 @@ struct GroupOptions {
   /// Beams: local axis 3 lies in the plane of the beam and this vector. Membranes, shells: axis 1 of material
   /// and prestress is its projection.
   std::optional<Vec3> orientation;
-  EndRelease release_start, release_end;            ///< beams
-  Vec3 offset_start = Vec3::Zero(), offset_end = Vec3::Zero();  ///< beams: from the node to the beam's end [m]
-  SourceLocation where;             ///< for messages
+  EndRelease release_start, release_end;  ///< beams
+  Vec3 offset_start = Vec3::Zero(),
+       offset_end = Vec3::Zero();  ///< beams: from the node to the beam's end [m]
+  SourceLocation where;            ///< for messages
 };
 
 struct SupportOptions {
@@ -181,17 +182,17 @@ struct LoadOptions {
   std::string name;
   std::vector<std::string> on;
   // On each node.
-  Vec3 force = Vec3::Zero();             ///< [N]
-  Vec3 moment = Vec3::Zero();            ///< [N m]
-  std::optional<Vec3> displacement;      ///< of supported directions [m]
-  std::optional<Vec3> rotation;          ///< rotation vector of supported directions [rad]
+  Vec3 force = Vec3::Zero();         ///< [N]
+  Vec3 moment = Vec3::Zero();        ///< [N m]
+  std::optional<Vec3> displacement;  ///< of supported directions [m]
+  std::optional<Vec3> rotation;      ///< rotation vector of supported directions [rad]
   // On elements.
-  std::optional<Vec3> line_force;        ///< per reference length [N/m]
-  std::optional<Vec3> line_moment;       ///< per reference length [N]
-  std::optional<Vec3> surface_force;     ///< per reference area [Pa]
-  std::optional<double> pressure;        ///< follows the facets [Pa]
+  std::optional<Vec3> line_force;            ///< per reference length [N/m]
+  std::optional<Vec3> line_moment;           ///< per reference length [N]
+  std::optional<Vec3> surface_force;         ///< per reference area [Pa]
+  std::optional<double> pressure;            ///< follows the facets [Pa]
   std::optional<double> temperature_change;  ///< of groups [K]
-  std::optional<Vec3> acceleration;      ///< acts on every mass [m/s^2]; needs no `on`
+  std::optional<Vec3> acceleration;          ///< acts on every mass [m/s^2]; needs no `on`
   SourceLocation where;
 
   bool nodal() const { return !force.isZero(0) || !moment.isZero(0) || displacement || rotation; }

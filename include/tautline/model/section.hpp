@@ -20,8 +20,8 @@ element::BeamSection tapered_section(const TaperedTube& tube, double place);
 
 /// Fills the section of `group` (kind and stiffnesses) from its options.
 /// Rectangle: torsion constant by Roark's approximation (0.5 %), shear factor 5/6. Round bar and tube: shear
-/// factors of Cowper (1966). I section: thin-walled torsion constant sum b t^3/3, shear carried by the web (along
-/// axis 3) and by 5/6 of the flanges (along axis 2).
+/// factors of Cowper (1966). I section: thin-walled torsion constant sum b t^3/3, shear carried by the web
+/// (along axis 3) and by 5/6 of the flanges (along axis 2).
 void set_section(Group& group, const SectionOptions& section, const Materials& materials);
 
 /// Initial strains and prestress of one group's elements from the deck (`tension`, `unstressed_length`, ...);
