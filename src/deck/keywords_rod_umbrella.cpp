@@ -17,8 +17,11 @@ void read_points(Reader& reader, const Keyword& keyword, const Node& node, Merid
     reader.complain(node, node.items.empty() ? "no points make no curve" : "one point makes no curve",
                     "expected two points at least");
   for (const auto& point : node.items) {
-    const auto xy = point.is_sequence() ? reader.pair(keyword, point) : std::nullopt;
-    if (!point.is_sequence()) reader.wrong_value(keyword, point, "does not fit here");
+    if (!point.is_sequence()) {
+      reader.wrong_value(keyword, point, "does not fit here");
+      continue;
+    }
+    const auto xy = reader.pair(keyword, point);
     if (!xy) continue;
     if (!options.x.empty() && (*xy)[0] <= options.x.back())
       reader.complain(
