@@ -21,7 +21,6 @@ struct Context {
   DirectSolver& solver;
   std::exception_ptr error;
   bool singular = false;
-  int tangents = 0;       ///< formed so far
   double stiffening = 0;  ///< added to the diagonal of the tangent at hand
   std::chrono::steady_clock::time_point solve_start{};
 
@@ -37,12 +36,11 @@ struct Context {
   }
 };
 
-/// On the way, not at the start, a tangent without resistance in some direction (between one cable that
-/// slackens and another not yet taut) is stiffened in all directions; the line search then finds where the
-/// energy stops falling. @return whether there are factors now
+/// A tangent without resistance in a direction that is loaded (a flat film under pressure, the gap between
+/// one cable that slackens and another not yet taut) is stiffened in all directions; the line search then
+/// finds where the energy stops falling. @return whether there are factors now
 bool stiffen(Context& context) {
   constexpr double part = 1e-3;  // of the mean stiffness: a step some times too long along the free direction
-  if (context.tangents < 2) return false;
   PetscInt n = 0;
   check(MatGetSize(context.tangent.handle(), &n, nullptr), "MatGetSize");
   const double mean = context.tangent.norm_of_diagonal() / std::sqrt(static_cast<double>(n));
@@ -63,7 +61,6 @@ PetscErrorCode form_tangent(::SNES snes, ::Vec, ::Mat, ::Mat, void* data) {
   auto& context = *static_cast<Context*>(data);
   return context.guard([&] {
     context.callbacks.tangent(context.tangent);
-    ++context.tangents;
     context.stiffening = 0;
     if (context.solver.factor(context.tangent) || stiffen(context)) return;
     context.singular = true;
@@ -222,7 +219,7 @@ SnesOutcome run_snes(const SnesCallbacks& callbacks, SymmetricMatrix& tangent, D
     callbacks.accept(x);
     return SnesOutcome::converged;
   }
-  if (context.singular) return SnesOutcome::singular;
+  if (context.singular || context.stiffening > 0) return SnesOutcome::singular;
   return reason == SNES_DIVERGED_FNORM_NAN ? SnesOutcome::not_a_number : SnesOutcome::diverged;
 }
 

@@ -41,7 +41,8 @@ std::string steps_text(const deck::Deck& deck) {
   return text + "\n";
 }
 
-/// Supports of each stage of each equilibrium are looked at on the structure as form-found, not subdivided.
+/// Supports of each stage of each equilibrium are looked at on the structure as form-found and divided,
+/// undeformed.
 void foretell_mechanisms(Context& context) {
   for (const auto& step : context.deck.steps) {
     if (const auto* form_finding = std::get_if<FormFindingOptions>(&step.options)) {
@@ -49,6 +50,7 @@ void foretell_mechanisms(Context& context) {
       if (entry["status"] != "done")
         throw ModelError(fmt::format("step \"{}\": {}", step.name, entry["reason"].get<std::string>()));
     }
+    if (const auto* mesh = std::get_if<MeshOptions>(&step.options)) run_step(context, *mesh);
     const auto* equilibrium = std::get_if<EquilibriumOptions>(&step.options);
     if (equilibrium == nullptr) continue;
     auto stages = equilibrium->stages;
