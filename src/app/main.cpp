@@ -40,13 +40,15 @@ Progress::Mode progress_mode(const Request& request) {
 int run(const Request& request) {
   Progress progress(progress_mode(request));
   const auto deck = deck::read_deck(request.deck, request.overrides);
-  return static_cast<int>(steps::run(deck, {directory_of(request), !request.no_pictures}, progress));
+  return static_cast<int>(
+      steps::run(deck, {directory_of(request), !request.no_pictures, request.checkpoint}, progress));
 }
 
 int study(const Request& request) {
   Progress progress(progress_mode(request));
   return static_cast<int>(steps::study(request.deck, request.overrides, request.subdivisions,
-                                       {directory_of(request, "_study"), !request.no_pictures}, progress));
+                                       {directory_of(request, "_study"), !request.no_pictures, ""},
+                                       progress));
 }
 
 int check(const Request& request) {
@@ -123,6 +125,10 @@ int main(int argc, char** argv) {
 
   auto* run_command = app.add_subcommand("run", "run a deck");
   add_run_options(*run_command, request);
+  run_command->add_option(
+      "--from", request.checkpoint,
+      "go on from the checkpoints in this directory of results, also with a deck of which "
+      "only later steps differ");
   run_command->footer(
       "Example: tautline run inputs/perimeter_truss_12m.yaml --set parameters.subdivisions=8");
   on_ranks(run_command, run);
@@ -141,7 +147,9 @@ int main(int argc, char** argv) {
   on_ranks(study_command, study);
 
   auto* new_command = app.add_subcommand("new", "print a commented starting deck");
-  new_command->add_option("kind", request.kind, "perimeter-truss, net, membrane or frame")->required();
+  new_command
+      ->add_option("kind", request.kind, "perimeter-truss, umbrella, net, membrane, frame or rod-umbrella")
+      ->required();
   new_command->footer("Example: tautline new net > net.yaml");
   on(new_command, [](const Request& r) {
     std::cout << deck::starting_deck(r.kind);

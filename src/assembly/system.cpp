@@ -11,7 +11,7 @@
 
 #include "assembly/contribution.hpp"
 #include "assembly/expansion.hpp"
-#include "assembly/link_terms.hpp"
+#include "assembly/own_elements.hpp"
 
 namespace tautline::assembly {
 
@@ -27,19 +27,6 @@ double bounding_size(const model::Model& model) {
   }
   const double size = (high - low).norm();
   return size > 0 ? size : 1;
-}
-
-/// Adds an element matrix, given in unknowns, without the rows and columns of held ones.
-template <class Matrix>
-void add_free(std::span<const int> blocks, Matrix& values, const std::vector<bool>& held,
-              la::SymmetricMatrix& to) {
-  for (std::size_t b = 0; b < blocks.size(); ++b)
-    for (int c = 0; c < 3; ++c)
-      if (held[static_cast<std::size_t>(3 * blocks[b] + c)]) {
-        values.row(3 * static_cast<int>(b) + c).setZero();
-        values.col(3 * static_cast<int>(b) + c).setZero();
-      }
-  to.add(blocks, values.data());
 }
 
 }  // namespace
@@ -63,7 +50,7 @@ System::System(model::Model model)
     : model_(std::move(model)),
       map_(make_dof_map(model_)),
       kinematics_(model_, map_),
-      state_(model::State::reference(model_)),
+      state_(model::State::initial(model_)),
       committed_(state_),
       turned_(model_.nodes.size(), Vec3::Zero()),
       size_(bounding_size(model_)) {
@@ -94,8 +81,8 @@ void System::find_rounding() {
   double relative = of_lines;
   const auto note = [&](double& to, double value) { to = std::max(to, relative * value); };
   for (const auto& group : model_.groups) {
-    if (model::is_cable_like(group.kind)) note(rounding_force_, group.cable.axial_stiffness);
-    if (group.kind == model::ElementKind::beam) note(rounding_force_, group.beam.axial_stiffness);
+    if (model::is_cable_like(group.kind)) note(rounding_force_of_lines_, group.cable.axial_stiffness);
+    if (group.kind == model::ElementKind::beam) note(rounding_force_of_lines_, group.beam.axial_stiffness);
     relative = of_facets;
     if (group.kind == model::ElementKind::membrane)
       note(rounding_force_, group.membrane.tension_stiffness * size_);
@@ -110,12 +97,13 @@ void System::find_rounding() {
     const auto& section = model_.groups[beam.group].beam;
     const double length = (model_.nodes[beam.nodes[1]] - model_.nodes[beam.nodes[0]]).norm();
     const double bending = std::max(section.bending_stiffness_2, section.bending_stiffness_3);
-    note(rounding_force_, bending / (length * length));
+    note(rounding_force_of_lines_, bending / (length * length));
     note(rounding_moment_, std::max(section.axial_stiffness * length, bending / length));
   }
   const double sum =
       std::sqrt(static_cast<double>(model_.nodes.size()));  // of random errors, as norms see them
-  rounding_force_ *= sum;
+  rounding_force_ = sum * std::max(rounding_force_, rounding_force_of_lines_);
+  rounding_force_of_lines_ *= sum;
   rounding_moment_ *= sum;
 }
 
@@ -133,7 +121,7 @@ void System::set_state(const model::State& state, const std::vector<double>& str
 }
 
 void System::reset() {
-  set_state(model::State::reference(model_));
+  set_state(model::State::initial(model_));
   std::fill(turned_.begin(), turned_.end(), Vec3::Zero());
   start_ = end_ = now_ = acting({});
 }
@@ -181,6 +169,10 @@ void System::set_target_strains(std::vector<double> strains) {
   wanted_strain_ = std::move(strains);
 }
 
+void System::set_stiffness_factors(const std::vector<double>& factors) {
+  for (std::size_t i = 0; i < factors.size(); ++i) model_.cables[i].stiffness_factor = factors[i];
+}
+
 void System::set_lambda(double lambda) {
   apply(lambda);
 }
@@ -193,29 +185,6 @@ void System::apply(double lambda) {
     model_.groups[g].temperature_change = now_.temperature[g];
   for (std::size_t i = 0; i < model_.beams.size(); ++i) model_.beams[i].line_load = now_.line[i];
   model_.acceleration = now_.acceleration;
-}
-
-template <class Visit>
-void System::for_each_own(const Visit& visit) const {
-  const auto each = [&](const auto& elements, const std::vector<int>& indices) {
-    for (const int i : indices) visit(elements[static_cast<std::size_t>(i)]);
-  };
-  each(model_.cables, share_.cables);
-  each(model_.beams, share_.beams);
-  each(model_.membranes, share_.membranes);
-  each(model_.shells, share_.shells);
-  each(model_.springs, share_.springs);
-  each(model_.masses, share_.masses);
-}
-
-template <class Visit>
-void System::for_each_pressed(const Visit& visit) const {
-  for (const int i : share_.membranes)
-    if (const double p = now_.pressure[static_cast<std::size_t>(i)]; p != 0)
-      visit(model_.membranes[static_cast<std::size_t>(i)].nodes, p);
-  for (const int i : share_.shells)
-    if (const double p = now_.pressure[model_.membranes.size() + static_cast<std::size_t>(i)]; p != 0)
-      visit(model_.shells[static_cast<std::size_t>(i)].nodes, p);
 }
 
 void System::add_forces(const model::State& state, const Kinematics& at, std::vector<double>& force,
@@ -341,46 +310,6 @@ bool System::predict(analysis::Workspace& workspace) {
   restart();
   driven_to_ = lambda_;
   return true;
-}
-
-void System::tangent(la::SymmetricMatrix& k) {
-  const Stopwatch watch(assembly_seconds_);
-  kinematics_.linearise(state_);
-  k.set_zero();
-  const auto add = [&](const auto& nodes, bool rotations, const auto& force, auto& values) {
-    const Expansion expansion(kinematics_, map_, nodes, rotations);
-    if (expansion.plain()) return add_free(expansion.blocks(), values, held(), k);
-    const MatX& b = expansion.matrix();
-    MatX transformed = b.transpose() * values * b;
-    LinkTerms(kinematics_, map_, model_, expansion, transformed).add(nodes, rotations, force);
-    add_free(expansion.blocks(), transformed, held(), k);
-  };
-  for_each_own([&](const auto& element) {
-    auto c = contribution(model_, state_, element, Want::tangent);
-    add(element.nodes, uses_rotations(model_, element), c.force, c.tangent);
-  });
-  for_each_pressed([&](const model::FacetNodes& nodes, double pressure) {
-    auto c = pressure_contribution(model_, state_, nodes, pressure, Want::tangent);
-    c.force = -c.force;
-    c.tangent = -c.tangent;
-    add(nodes, false, c.force, c.tangent);
-  });
-  for (const auto& link : model_.links) {  // dead loads at the end of an arm
-    const auto& [force, moment] = std::pair(now_.force[link.follower], now_.moment[link.follower]);
-    if (force.isZero(0) && moment.isZero(0)) continue;
-    const bool turns = map_.rotational[link.follower];
-    Vec<6> load;
-    load << -force, -moment;
-    ElementMatrix none = ElementMatrix::Zero(turns ? 6 : 3, turns ? 6 : 3);
-    add(std::array<int, 1>{link.follower}, turns, load, none);
-  }
-  for (int block = map_.layout.first; block < map_.layout.first + map_.layout.local; ++block) {
-    Mat3 identity = Mat3::Zero();
-    for (int c = 0; c < 3; ++c)
-      if (held()[static_cast<std::size_t>(3 * block + c)]) identity(c, c) = support_stiffness_;
-    k.add(std::array<int, 1>{block}, identity.data());
-  }
-  k.finish();
 }
 
 la::SymmetricMatrix System::mass(MassKind kind) const {

@@ -41,7 +41,7 @@ class GroupCheck {
 
   void check_defined(const Entry& entry) {
     if (names_.open() || names_.defines(entry.key)) return;
-    const bool reflector = deck_.truss() != nullptr;
+    const bool reflector = deck_.dish() != nullptr;
     reader_.complain(
         entry.place, fmt::format("no elements belong to group \"{}\"", entry.key), "in groups",
         fmt::format("groups of the {}: {}", reflector ? "reflector" : "model", join(names_.element_groups())),
@@ -96,6 +96,22 @@ class GroupCheck {
     return {};
   }
 
+  /// Only a bar is pressed.
+  void check_sign(const Entry& entry) {
+    const auto group = deck_.groups.find(entry.key);
+    if (group == deck_.groups.end()) return;
+    const auto& options = group->second;
+    const auto complain = [&](const char* key, const char* expectation) {
+      const Node& value = *entry.value.find(key);
+      reader_.complain(value.place, fmt::format("{} = {} would press a cable", key, value.text),
+                       context(entry.key), expectation,
+                       "members in compression are of a section of kind bar");
+    };
+    if (options.tension && *options.tension < 0) complain("tension", "expected a number >= 0 [N]");
+    if (options.force_density && *options.force_density <= 0)
+      complain("force_density", "expected a number > 0 [N/m]");
+  }
+
   static const std::string* state_of(const Node& group) {
     for (const auto& entry : group.entries)
       if (contains(initial_states(), entry.key)) return &entry.key;
@@ -113,18 +129,19 @@ class GroupCheck {
                          "in groups", "expected exactly one of: unstressed_length, prestrain");
       return;
     }
+    check_sign(entry);
     const bool supplied = is_supplied(entry.key);
     if (state == nullptr && !supplied)
       reader_.complain(entry.place, fmt::format("cable group \"{}\" has no initial state", entry.key),
                        "in groups", "expected exactly one of: " + join(initial_states()), remedy(entry.key));
-    if (state != nullptr && supplied && deck_.truss())
+    if (state != nullptr && supplied && deck_.dish())
       reader_.complain(entry.value.find(*state)->label,
                        fmt::format("the tension of \"{}\" follows from form_finding", entry.key),
                        context(entry.key), {}, fmt::format("leave \"{}\" out", *state));
   }
 
   std::string remedy(const std::string& group) const {
-    if (deck_.truss() && group == "ties") return "a form_finding step would find the tension of \"ties\"";
+    if (deck_.dish() && group == "ties") return "a form_finding step would find the tension of \"ties\"";
     if (deck_.model) return "a form_finding step with method linear would supply it to its net";
     return {};
   }
@@ -133,9 +150,12 @@ class GroupCheck {
     return std::any_of(deck_.steps.begin(), deck_.steps.end(), [&](const steps::Step& step) {
       const auto* form_finding = std::get_if<FormFindingOptions>(&step.options);
       if (form_finding == nullptr || step.kind.empty()) return false;
-      if (deck_.truss()) return group == "ties";
+      if (deck_.dish()) return group == "ties";
       const bool in_net = form_finding->net.empty() || contains(form_finding->net, group);
-      return form_finding->method == FormFindingOptions::Method::linear && in_net;
+      using enum steps::FormMethod;
+      const bool finds_densities = form_finding->method == linear || form_finding->method == constraints ||
+                                   form_finding->method == film;
+      return (finds_densities && in_net) || contains(form_finding->ties, group);
     });
   }
 

@@ -60,6 +60,8 @@ class StepCheck {
       if (const auto* options = std::get_if<FormFindingOptions>(&step.options))
         check_form_finding(*options, *node);
       if (std::holds_alternative<TuningStepOptions>(step.options)) check_tuning(*node);
+      if (std::holds_alternative<InverseOptions>(step.options)) check_inverse(*node);
+      if (std::holds_alternative<EquilibriumOptions>(step.options)) has_equilibrium_ = true;
       if (std::holds_alternative<EquilibriumOptions>(step.options))
         check_unique(node->find("stages"), "stage", {"steps", std::to_string(i), "stages"}, reader_);
     }
@@ -71,46 +73,91 @@ class StepCheck {
     const bool of_rods = std::holds_alternative<RodShapingOptions>(step.options);
     const Node* kind = root_.at({"reflector", "kind"});
     const bool unknown = kind != nullptr && reflector_blocks().find(kind->text) == nullptr;
-    if (unknown || of_rods == (deck_.rod_umbrella() != nullptr)) return true;
     const Node& place = *node.find("kind");
-    if (of_rods)
-      reader_.complain(place.place, "kind rod_shaping needs a reflector of kind rod-umbrella", context_);
-    else
+    if (of_rods) has_rods_ = true;
+    if (unknown) return true;
+    if (deck_.rod_umbrella() == nullptr) {
+      if (of_rods)
+        reader_.complain(place.place, "kind rod_shaping needs a reflector of kind rod-umbrella", context_);
+      return !of_rods;
+    }
+    const bool of_nets = std::holds_alternative<FormFindingOptions>(step.options) ||
+                         std::holds_alternative<TuningStepOptions>(step.options);
+    if (of_nets)
       reader_.complain(place.place, fmt::format("kind {} does not work on a rod-umbrella", step.kind),
-                       context_, "expected kind: rod_shaping");
-    return false;
+                       context_, "expected one of: rod_shaping, mesh, equilibrium, inverse, modal");
+    else if (!has_rods_)
+      reader_.complain(place.place,
+                       fmt::format("kind {} on a rod-umbrella needs a rod_shaping step before it", step.kind),
+                       context_, {}, "rod_shaping finds the cables, or takes them as given by `stiffness`");
+    const auto& mass = deck_.rod_umbrella()->mass_per_length;
+    const bool modal = std::holds_alternative<ModalOptions>(step.options);
+    if (modal && std::all_of(mass.begin(), mass.end(), [](double m) { return m == 0; }))
+      reader_.complain(place.place, "kind modal needs rods with a mass", context_,
+                       "expected reflector.mass_per_length: numbers > 0 [kg/m]");
+    return !of_nets && has_rods_;
   }
 
   void check_rod_shaping(const RodShapingOptions& options, const Node& node) {
-    const Node* stiffness = node.find("stiffness");
-    if (deck_.rod_umbrella() == nullptr || stiffness == nullptr || !options.stiffness) return;
+    if (deck_.rod_umbrella() == nullptr) return;
     const int links = deck_.rod_umbrella()->links;
-    if (const auto n = static_cast<int>(options.stiffness->size()); n != 1 && n != links)
-      reader_.complain(stiffness->place, fmt::format("stiffness has {} numbers for {} cables", n, links),
-                       context_, fmt::format("expected one number for all, or {}", links));
+    for (const auto& [key, values] :
+         {std::pair{"stiffness", &options.stiffness}, std::pair{"reaction", &options.reaction}}) {
+      const Node* list = node.find(key);
+      if (list == nullptr || !*values) continue;
+      if (const auto n = static_cast<int>((*values)->size()); n != 1 && n != links)
+        reader_.complain(list->place, fmt::format("{} has {} numbers for {} nodes", key, n, links), context_,
+                         fmt::format("expected one number for all, or {}", links));
+    }
   }
 
   void check_form_finding(const FormFindingOptions& options, const Node& node) {
-    if (deck_.truss() && node.find("fixed") != nullptr)
-      reader_.complain(node.find("fixed")->label, "\"fixed\" is for plain models", context_, {},
-                       "the net of a reflector is fixed on its rim");
-    if (options.method != FormFindingOptions::Method::tension) return;
+    if (deck_.dish()) check_reflector_form(options, node);
+    if (options.method != FormMethod::tension) return;
     for (const auto& group : net_of(options)) {
       const Node* block = root_.at({"groups", group});
-      if (block == nullptr || names_.member(group) != Member::cable || block->find("tension") != nullptr)
-        continue;
+      if (block == nullptr || names_.member(group) != Member::cable) continue;
+      const Node* tension = block->find("tension");
+      if (const auto known = deck_.groups.find(group);
+          known != deck_.groups.end() && known->second.tension && *known->second.tension == 0)
+        reader_.complain(tension->place, fmt::format("tension = 0 asks nothing of net group \"{}\"", group),
+                         context_text({"groups", group}), "expected a number > 0 [N]",
+                         "a cable without tension is no part of a net: leave the group out of `net`");
+      if (tension != nullptr || block->find("force_density") != nullptr) continue;
       reader_.complain(
           block->label, fmt::format("net group \"{}\" has no tension", group),
-          context_text({"groups", group}), "expected tension: a number >= 0 [N]",
+          context_text({"groups", group}),
+          "expected tension: a number > 0 [N], or a force_density to be kept",
           fmt::format(
               "form-finding (line {}) finds the shape for prescribed tensions; method: linear does without",
               node.label.line));
     }
   }
 
+  void check_reflector_form(const FormFindingOptions& options, const Node& node) {
+    for (const char* key : {"fixed", "surface", "on_surface", "ties", "guides"})
+      if (const Node* value = node.find(key))
+        reader_.complain(value->label, fmt::format("\"{}\" is for plain models", key), context_, {},
+                         "the net of a reflector is fixed on its rim or spokes and lies on its paraboloid");
+    if (options.method != FormMethod::tension && options.method != FormMethod::linear &&
+        options.method != FormMethod::constraints)
+      reader_.complain(*node.find("method"), "this method does not bind a net to a paraboloid",
+                       "expected one of: tension, linear, constraints");
+  }
+
   std::vector<std::string> net_of(const FormFindingOptions& options) const {
     if (!options.net.empty()) return options.net;
-    return deck_.truss() ? std::vector<std::string>{"front_net"} : names_.known("cable group");
+    if (!deck_.dish()) return names_.known("cable group");
+    std::vector<std::string> front;
+    for (const auto& name : names_.known("cable group"))
+      if (name.rfind("front_", 0) == 0) front.push_back(name);
+    return front;
+  }
+
+  void check_inverse(const Node& node) {
+    if (!has_equilibrium_)
+      reader_.complain(node.label, "an inverse step needs an equilibrium step before it", context_, {},
+                       "it starts from an equilibrium and keeps the loads that act there");
   }
 
   void check_tuning(const Node& node) {
@@ -124,6 +171,8 @@ class StepCheck {
   const Node& root_;
   Reader& reader_;
   std::string context_;
+  bool has_rods_ = false;         ///< a rod_shaping step stands before
+  bool has_equilibrium_ = false;  ///< an equilibrium step stands before
 };
 
 }  // namespace

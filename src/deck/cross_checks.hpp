@@ -32,7 +32,7 @@ class Names {
   const std::vector<std::string>& element_groups() const { return element_groups_; }
   bool defines(const std::string& group) const;
   /// Whether the deck must give the group a section.
-  bool needs_section(const std::string& group) const { return group != optional_group_; }
+  bool needs_section(const std::string& group) const { return optional_groups_.count(group) == 0; }
   /// What the reflector's group is made of; nothing for other structures.
   std::optional<Member> required_member(const std::string& group) const;
   /// What a group is made of by the kind of its section; nothing if that cannot be told.
@@ -46,14 +46,21 @@ class Names {
   std::string remedy(const std::string& kind, const std::string& name) const;
 
  private:
+  void describe_reflector(const Deck& deck);
   void collect();
+  /// The number k of "strut_<k>" or "spoke_<k>" of a reflector, or -1.
+  int number_of(const std::string& name) const;
   bool contains(const std::string& kind, const std::string& name) const;
 
   const Node& root_;
-  bool is_reflector_ = false;
-  int n_struts_ = 0;  ///< selections strut_0, strut_1, ... of a reflector
+  bool is_reflector_ = false;  ///< a dish with nets
+  const rod::UmbrellaOptions* umbrella_ = nullptr;
+  std::map<std::string, Member> reflector_groups_;
+  std::vector<std::string> selections_;  ///< of a reflector
+  std::string numbered_;  ///< strut_ or spoke_: selections strut_0, strut_1, ... of a reflector
+  int n_numbered_ = 0;
   bool open_ = false;
-  std::string optional_group_;
+  std::set<std::string> optional_groups_;
   std::vector<std::string> element_groups_;
   std::map<std::string, std::vector<std::string>> known_;             ///< kind -> names in deck order
   std::map<std::string, std::set<std::string, std::less<>>> lookup_;  ///< the same, for finding

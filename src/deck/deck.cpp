@@ -37,6 +37,48 @@ std::string without_byte_order_mark(const std::string& text) {
   return text.rfind("\xEF\xBB\xBF", 0) == 0 ? text.substr(3) : text;
 }
 
+/// The values of a tree as text in which layout, comments and where they come from do not show.
+void write_values(const Node& node, std::string& to) {
+  switch (node.kind) {
+    case Node::Kind::scalar:
+      to += fmt::format("{}:{};", node.text.size(), node.text);
+      return;
+    case Node::Kind::sequence:
+      to += '[';
+      for (const auto& item : node.items) write_values(item, to);
+      to += ']';
+      return;
+    case Node::Kind::mapping:
+      to += '{';
+      for (const auto& entry : node.entries) {
+        to += fmt::format("{}:{}=", entry.key.size(), entry.key);
+        write_values(entry.value, to);
+      }
+      to += '}';
+      return;
+    default:
+      to += '~';
+  }
+}
+
+void take_fingerprints(Deck& deck, const Node& root) {
+  std::string rest;
+  for (const auto& entry : root.entries) {
+    const auto& key = entry.key;
+    if (key == "steps" || key == "title" || key == "output" || key == "parameters" || key == "solver")
+      continue;
+    rest += key;
+    write_values(entry.value, rest);
+  }
+  deck.fingerprint = sha256(rest);
+  if (const Node* steps = root.find("steps"))
+    for (const auto& step : steps->items) {
+      std::string text;
+      write_values(step, text);
+      deck.step_fingerprints.push_back(sha256(text));
+    }
+}
+
 /// Puts in what the tree says but options do not read themselves: kinds and names left out.
 void complete(Deck& deck, const Node& root) {
   for (std::size_t i = 0; i < deck.steps.size(); ++i) {
@@ -67,6 +109,7 @@ Deck parse_deck(const std::string& bytes, const std::string& name,
   deck.path = name;
   deck.sha256 = sha256(bytes);
   complete(deck, root);
+  take_fingerprints(deck, root);
   const Names names(deck, root);
   check_references(names, reader);
   check_groups(deck, names, root, reader);

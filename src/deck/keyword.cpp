@@ -122,6 +122,8 @@ std::string Keyword::expectation() const {
       return with_range("a number for all, or a list of numbers", *this);
     case Type::points:
       return with_range("a list of points [x, y]", *this);
+    case Type::table:
+      return with_range("a list of lists of numbers", *this);
     case Type::releases:
       return "all, or a list of torsion, bending_2, bending_3";
     case Type::edges:

@@ -29,6 +29,7 @@ enum class Type {
   pair,         ///< one number for both, or [first, second]
   numbers,      ///< one number for all, or a list
   points,       ///< list of [x, y]
+  table,        ///< list of lists of numbers
   directions,   ///< all, pinned, symmetry, or a list of x, y, z, rx, ry, rz
   releases,     ///< all, or a list of torsion, bending_2, bending_3
   edges,        ///< list of [node, node]

@@ -6,17 +6,24 @@
 
 namespace tautline::deck {
 
-const BlockSet& reflector_blocks();  ///< of Reflector
-Block rod_umbrella_block();          ///< of rod::UmbrellaOptions
-const BlockSet& model_blocks();      ///< of model::ModelOptions
-const BlockSet& material_blocks();   ///< of model::MaterialOptions
-const BlockSet& section_blocks();    ///< of model::SectionOptions
-const BlockSet& group_blocks();      ///< of model::GroupOptions
-const BlockSet& support_blocks();    ///< of model::SupportOptions
-const BlockSet& load_blocks();       ///< of model::LoadOptions
-const BlockSet& step_blocks();       ///< of steps::Step
-const BlockSet& output_blocks();     ///< of output::OutputOptions
-const BlockSet& solver_blocks();     ///< of analysis::NewtonOptions
+const BlockSet& reflector_blocks();        ///< of Reflector
+Block umbrella_block();                    ///< of reflector::UmbrellaOptions
+Block rod_umbrella_block();                ///< of rod::UmbrellaOptions
+const BlockSet& target_meridian_blocks();  ///< of rod::MeridianOptions, in targets of an inverse
+Block inverse_block();                     ///< of steps::InverseOptions
+const BlockSet& model_blocks();            ///< of model::ModelOptions
+const BlockSet& material_blocks();         ///< of model::MaterialOptions
+const BlockSet& section_blocks();          ///< of model::SectionOptions
+const BlockSet& group_blocks();            ///< of model::GroupOptions
+const BlockSet& support_blocks();          ///< of model::SupportOptions
+const BlockSet& load_blocks();             ///< of model::LoadOptions
+Block equilibrium_block();                 ///< of steps::Step
+Block buckling_block();                    ///< of steps::Step
+Block collapse_block();                    ///< of steps::Step
+Block form_finding_block();                ///< of steps::Step
+const BlockSet& step_blocks();             ///< of steps::Step
+const BlockSet& output_blocks();           ///< of output::OutputOptions
+const BlockSet& solver_blocks();           ///< of analysis::NewtonOptions
 
 /// Whether a reflector of this kind has all of its structure in its own block: no sections, groups, supports.
 bool is_complete_structure(const std::string& reflector_kind);

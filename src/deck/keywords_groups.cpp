@@ -96,9 +96,8 @@ Block make_group() {
           "divided with the facets.");
   b.key("tension", &Options::tension)
       .in("N")
-      .at_least(0)
       .also_called({"force", "pretension"})
-      .says("Cables and bars: initial tension.");
+      .says("Cables and bars: initial tension; negative for bars in compression.");
   b.key("unstressed_length", &Options::unstressed_length)
       .in("m")
       .above(0)
@@ -106,9 +105,8 @@ Block make_group() {
       .says("Cables: unstressed length of each.");
   b.key("force_density", &Options::force_density)
       .in("N/m")
-      .above(0)
       .also_called({"q"})
-      .says("Cables: initial tension over initial length.");
+      .says("Cables and bars: initial tension over initial length; negative for bars in compression.");
   b.key("prestrain", &Options::prestrain)
       .above(-1)
       .says("Cables: initial length over unstressed length, minus one.");

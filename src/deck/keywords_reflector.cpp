@@ -1,5 +1,6 @@
 #include <cmath>
 #include <deck/builder.hpp>
+#include <deck/dish_keys.hpp>
 #include <deck/keywords.hpp>
 #include <tautline/core/text.hpp>
 #include <tautline/deck/deck.hpp>
@@ -10,14 +11,8 @@ namespace {
 
 using Options = reflector::PerimeterTrussOptions;
 
-void check_dish(Reader& reader, const Node& node, Options& options) {
+void check_radius(Reader& reader, const Node& node, Options& options) {
   const double radius = options.aperture / 2;
-  if (const Node* clearance = node.find("clearance");
-      clearance != nullptr && radius > 0 && options.clearance < -radius)
-    reader.complain(
-        *clearance, fmt::format("clearance = {} lies outside the dish", format_number(options.clearance)),
-        fmt::format("expected at least -aperture/2 = {} [m], where the parent axis is the centre of the dish",
-                    format_number(-radius)));
   if (const Node* measured = node.find("evaluation_radius");
       measured != nullptr && radius > 0 && options.evaluation_radius > radius)
     reader.complain(*measured,
@@ -44,23 +39,7 @@ Block make_perimeter_truss() {
       "reflector.perimeter-truss", "perimeter-truss",
       "Two triangular nets joined by ties between an upper and a lower rim that struts "
       "and crossed cords hold apart.");
-  b.key("aperture", &Options::aperture)
-      .in("m")
-      .above(0)
-      .required()
-      .also_called({"diameter", "D"})
-      .says("Diameter D of the aperture.");
-  b.key("focal_length", &Options::focal_length)
-      .in("m")
-      .above(0)
-      .required()
-      .also_called({"focus", "F", "f"})
-      .says("Focal length F of the parent paraboloid.");
-  b.key("clearance", &Options::clearance)
-      .in("m")
-      .by_default("-aperture/2 (axisymmetric dish)")
-      .also_called({"offset"})
-      .says("Distance from the parent axis to the near edge of the dish; at least -aperture/2.");
+  add_surface_keys(b);
   b.key("rings", &Options::rings)
       .at_least(1)
       .says("Rings of triangles in the net; the rim has 6 x rings nodes.");
@@ -84,9 +63,10 @@ Block make_perimeter_truss() {
       .above(0)
       .by_default("all of the cloth")
       .says("The surface error is taken inside this radius; at most aperture/2.");
-  b.key("frequency", &Options::frequency).in("Hz").at_least(0).says("Frequency for the gain loss; 0: none.");
+  add_frequency_key(b);
   b.check([](Reader& reader, const Node& node, Options& options) {
-    check_dish(reader, node, options);
+    check_clearance(reader, node, options);
+    check_radius(reader, node, options);
     check_struts(reader, node, options);
   });
   return b.take();
@@ -94,9 +74,21 @@ Block make_perimeter_truss() {
 
 }  // namespace
 
+void check_clearance(Reader& reader, const Node& node, const reflector::DishOptions& options) {
+  const double radius = options.aperture / 2;
+  if (const Node* clearance = node.find("clearance");
+      clearance != nullptr && radius > 0 && options.clearance < -radius)
+    reader.complain(
+        *clearance, fmt::format("clearance = {} lies outside the dish", format_number(options.clearance)),
+        fmt::format("expected at least -aperture/2 = {} [m], where the parent axis is the centre of the dish",
+                    format_number(-radius)));
+}
+
 const BlockSet& reflector_blocks() {
-  static const BlockSet set{
-      "reflector", "A parametric reflector.", {make_perimeter_truss(), rod_umbrella_block()}, {"umbrella"}};
+  static const BlockSet set{"reflector",
+                            "A parametric reflector.",
+                            {make_perimeter_truss(), umbrella_block(), rod_umbrella_block()},
+                            {}};
   return set;
 }
 

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <deck/builder.hpp>
+#include <stdexcept>
+#include <tautline/core/expression.hpp>
 #include <deck/keywords.hpp>
 #include <tautline/deck/deck.hpp>
 
@@ -32,30 +34,50 @@ void read_points(Reader& reader, const Keyword& keyword, const Node& node, Merid
   }
 }
 
-const BlockSet& meridian_blocks() {
-  static const BlockSet set = [] {
-    BlockBuilder<MeridianOptions> b("reflector.rod-umbrella.meridian", "",
-                                    "The curve Y = F(X) that makes the surface wanted by rotation about Y.");
-    b.key("coefficient", &MeridianOptions::coefficient)
-        .in("1/m")
-        .above(0)
-        .by_default("none; or give `points`")
-        .also_called({"lambda"})
-        .says("Parabola Y = coefficient X^2; its focal length is 1/(4 coefficient).");
-    b.custom("points", Type::points, read_points)
-        .in("m")
-        .by_default("none; or give `coefficient`")
-        .says("Any curve through points [x, y], x rising, from the root beyond the end of the rod.");
-    b.check([](Reader& reader, const Node& node, MeridianOptions&) {
-      const Node *coefficient = node.find("coefficient"), *points = node.find("points");
-      if ((coefficient == nullptr) == (points == nullptr))
-        reader.complain(points == nullptr ? node.label : points->label,
-                        points == nullptr ? "the meridian is not given" : "the meridian is given twice",
-                        reader.context(), "expected exactly one of: coefficient, points");
-    });
-    return BlockSet{"reflector.rod-umbrella.meridian", "The curve Y = F(X).", {b.take()}, {}};
-  }();
-  return set;
+void read_expression(Reader& reader, const Keyword& keyword, const Node& node, MeridianOptions& options) {
+  options.kind = rod::MeridianKind::expression;
+  const auto text = reader.text(keyword, node);
+  if (!text) return;
+  options.expression = *text;
+  try {
+    const Expression checked(*text);
+  } catch (const std::invalid_argument& error) {
+    reader.complain(node, fmt::format("\"{}\" is no formula: {}", *text, error.what()),
+                    "expected a formula of X with + - * / ^, parentheses, pi and functions as sqrt or cosh");
+  }
+}
+
+BlockSet make_meridian_blocks(const std::string& path) {
+  BlockBuilder<MeridianOptions> b(path, "",
+                                  "The curve Y = F(X) that makes the surface wanted by rotation about Y.");
+  b.key("coefficient", &MeridianOptions::coefficient)
+      .in("1/m")
+      .above(0)
+      .by_default("none; or give `points` or `expression`")
+      .also_called({"lambda"})
+      .says("Parabola Y = coefficient X^2; its focal length is 1/(4 coefficient).");
+  b.custom("points", Type::points, read_points)
+      .in("m")
+      .by_default("none; or give `coefficient` or `expression`")
+      .says("Any curve through points [x, y], x rising, from the root beyond the end of the rod.");
+  b.custom("expression", Type::text, read_expression)
+      .in("m")
+      .by_default("none; or give `coefficient` or `points`")
+      .says("A formula of X, e.g. \"0.1*X^2 - 0.0004*X^4\" or \"4*(cosh(X/4) - 1)\".");
+  b.check([](Reader& reader, const Node& node, MeridianOptions&) {
+    const Node* last = nullptr;
+    int given = 0;
+    for (const char* key : {"coefficient", "points", "expression"})
+      if (const Node* found = node.find(key)) {
+        last = found;
+        ++given;
+      }
+    if (given != 1)
+      reader.complain(given == 0 ? node.label : last->label,
+                      given == 0 ? "the meridian is not given" : "the meridian is given twice",
+                      reader.context(), "expected exactly one of: coefficient, points, expression");
+  });
+  return BlockSet{path, "The curve Y = F(X).", {b.take()}, {}};
 }
 
 const BlockSet& cable_blocks() {
@@ -94,7 +116,10 @@ const BlockSet& cable_blocks() {
 
 void check_umbrella(Reader& reader, const Node& node, UmbrellaOptions& options) {
   for (const auto& [key, values] :
-       {std::pair{"lengths", &options.lengths}, std::pair{"bending_stiffness", &options.bending_stiffness}}) {
+       {std::pair{"lengths", &options.lengths}, std::pair{"bending_stiffness", &options.bending_stiffness},
+        std::pair{"axial_stiffness", &options.axial_stiffness},
+        std::pair{"torsion_stiffness", &options.torsion_stiffness},
+        std::pair{"mass_per_length", &options.mass_per_length}}) {
     const Node* list = node.find(key);
     const auto n = static_cast<int>(values->size());
     if (list == nullptr || n <= 1 || n == options.links) continue;
@@ -111,12 +136,25 @@ void check_umbrella(Reader& reader, const Node& node, UmbrellaOptions& options) 
 
 }  // namespace
 
+const BlockSet& meridian_blocks() {
+  static const BlockSet set = make_meridian_blocks("reflector.rod-umbrella.meridian");
+  return set;
+}
+
+const BlockSet& target_meridian_blocks() {
+  static const BlockSet set = make_meridian_blocks("steps.inverse.targets.meridian");
+  return set;
+}
+
 Block rod_umbrella_block() {
   using Options = UmbrellaOptions;
-  BlockBuilder<Reflector, Options> b("reflector.rod-umbrella", "rod-umbrella",
-                                     "Flexible rods, straight when deployed, that cables along the parallels "
-                                     "bend to a surface of revolution. "
-                                     "It needs no sections, groups or supports; its step is `rod_shaping`.");
+  BlockBuilder<Reflector, Options> b(
+      "reflector.rod-umbrella", "rod-umbrella",
+      "Flexible rods, straight when deployed, that cables along the parallels "
+      "bend to a surface of revolution. "
+      "It needs no sections, groups or supports. The step `rod_shaping` finds the "
+      "cables and leaves beams `link_1`, ... and cables `parallel_1`, ... in "
+      "space to the steps after it; the load `turn` takes the `roots` to the stop.");
   b.key("rods", &Options::rods)
       .at_least(3)
       .required()
@@ -153,6 +191,23 @@ Block rod_umbrella_block() {
       .below(90)
       .also_called({"beta_0"})
       .says("Angle beta_0 of the straight rods to the plane across the axis; the cables are then just taut.");
+  b.key("axial_stiffness", &Options::axial_stiffness)
+      .in("N")
+      .above(0)
+      .by_default("1e10, as good as inextensible")
+      .also_called({"EA"})
+      .says("Stiffness EA of the links as beams in space; `rod_shaping` takes them as inextensible.");
+  b.key("torsion_stiffness", &Options::torsion_stiffness)
+      .in("N m2")
+      .above(0)
+      .by_default("EI/1.3, a round section")
+      .also_called({"GJ"})
+      .says("Stiffness GJ of the links as beams in space.");
+  b.key("mass_per_length", &Options::mass_per_length)
+      .in("kg/m")
+      .at_least(0)
+      .by_default("0")
+      .says("Mass of the links as beams in space, for weight and modes; the cables have none.");
   b.block("meridian", &Options::meridian, meridian_blocks()).required().says("The curve to be met.");
   b.block("cable", &Options::cable, cable_blocks()).says("The law of the cables.");
   b.check(check_umbrella);

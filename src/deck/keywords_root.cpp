@@ -47,7 +47,7 @@ bool is_complete(const Node& node) {
 
 void check_needless(Reader& reader, const Node& node, Deck& deck) {
   if (deck.rod_umbrella() == nullptr) return;
-  for (const char* key : {"materials", "sections", "groups", "supports", "loads", "solver"})
+  for (const char* key : {"materials", "sections", "groups", "supports"})
     if (const Node* block = node.find(key))
       reader.complain(block->label, fmt::format("\"{}\" has no effect on a rod-umbrella", key),
                       reader.context(), {}, "its block \"reflector\" tells all of it");

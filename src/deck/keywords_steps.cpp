@@ -1,64 +1,11 @@
-#include <deck/builder.hpp>
 #include <deck/keywords.hpp>
-#include <tautline/steps/step_options.hpp>
+#include <deck/step_builder.hpp>
 
 namespace tautline::deck {
 
 namespace {
 
 using namespace steps;
-
-template <class Options>
-BlockBuilder<Step, Options> step(const std::string& kind, const std::string& sentence) {
-  BlockBuilder<Step, Options> b("steps." + kind, kind, sentence);
-  b.key("name", &Step::name)
-      .by_default("the kind, with a number where it repeats")
-      .says("Name for results and --set; no two steps share one.");
-  return b;
-}
-
-Block make_form_finding() {
-  using Options = FormFindingOptions;
-  using Jacobian = formfinding::SurfaceJacobian;
-  auto b = step<Options>("form_finding", "Finds the shape of a net from its tensions or force densities.");
-  b.key("net", &Options::net)
-      .refers("cable group")
-      .by_default("front_net of a reflector, else all cable groups")
-      .says("Cable groups whose shape is found.");
-  b.key("fixed", &Options::fixed)
-      .refers("group")
-      .says("Plain models: groups or selections that stay in place besides the supports.");
-  b.choice("method", &Options::method,
-           std::vector<std::pair<std::string, Options::Method>>{{"tension", Options::Method::tension},
-                                                                {"linear", Options::Method::linear}})
-      .says("tension: for prescribed tensions; linear: for given force densities.");
-  b.choice(
-       "jacobian", [](Options & o) -> auto& { return o.solver.jacobian; },
-       std::vector<std::pair<std::string, Jacobian>>{{"consistent", Jacobian::consistent},
-                                                     {"as_published", Jacobian::as_published}})
-      .says(
-          "Derivative of heights on a surface: its slope (quadratic convergence), or vertical equilibrium as "
-          "published (linear).");
-  b.key(
-       "initial_force_density", [](Options & o) -> auto& { return o.solver.initial_force_density; })
-      .in("N/m")
-      .above(0)
-      .says(
-          "Force density of every branch to start from; method linear uses it for groups without "
-          "`force_density`.");
-  b.key(
-       "tolerance", [](Options & o) -> auto& { return o.solver.tolerance; })
-      .above(0)
-      .says("Largest deviation from the tensions over the largest tension.");
-  b.key(
-       "max_iterations", [](Options & o) -> auto& { return o.solver.max_iterations; })
-      .at_least(1)
-      .says("Most iterations.");
-  b.key(
-       "condition_number", [](Options & o) -> auto& { return o.solver.estimate_condition; })
-      .says("Estimate the condition number of the equations.");
-  return b.take();
-}
 
 void read_counts(Reader& reader, const Keyword& keyword, const Node& node, MeshOptions& options) {
   if (!reader.expect(Node::Kind::mapping, keyword, node)) return;
@@ -85,7 +32,8 @@ void check_mesh(Reader& reader, const Node& node, MeshOptions& options) {
 
 Block make_mesh() {
   using Pattern = model::FacetPattern;
-  auto b = step<MeshOptions>("mesh", "Divides facets, the cables along them and beams into finite elements.");
+  auto b = step_builder<MeshOptions>("mesh",
+                                     "Divides facets, the cables along them and beams into finite elements.");
   b.key(
        "subdivisions", [](MeshOptions & o) -> auto& { return o.subdivide.subdivisions; })
       .at_least(1)
@@ -101,43 +49,6 @@ Block make_mesh() {
       .at_least(1)
       .says("Other numbers of parts for cable or beam groups.");
   b.check(check_mesh);
-  return b.take();
-}
-
-const BlockSet& stage_blocks() {
-  static const BlockSet set = [] {
-    BlockBuilder<StageOptions> b("steps.equilibrium.stages", "",
-                                 "One stage: the supports and `hold` are kept, all else is free.");
-    b.key("name", &StageOptions::name).by_default("stage and its number").says("Name for results.");
-    b.key("hold", &StageOptions::hold)
-        .refers("group")
-        .says("Groups or selections held besides the supports.");
-    return BlockSet{"steps.equilibrium.stages", "Stages of an equilibrium.", {b.take()}, {}};
-  }();
-  return set;
-}
-
-Block make_equilibrium() {
-  using Options = EquilibriumOptions;
-  auto b = step<Options>("equilibrium", "Finds the equilibrium under the supports and loads.");
-  b.list("stages", &Options::stages, stage_blocks())
-      .says(
-          "Stages one after the other, e.g. to release parts that were held; without it one stage with the "
-          "supports only.");
-  b.key("loads", &Options::loads)
-      .refers("load")
-      .by_default("all loads of the deck")
-      .says(
-          "All loads that act at the end of this step and from then on, ramped up in its last stage; others "
-          "that acted "
-          "before are ramped out. An empty list: none.");
-  b.key("reset", &Options::reset).says("Start again from the reference configuration.");
-  b.key("increments", &Options::increments)
-      .at_least(1)
-      .says("The loads of the last stage come on in at least so many equal parts.");
-  b.key("monitor", &Options::monitor)
-      .refers("group")
-      .says("Groups or selections whose mean displacement and rotation are reported after each part.");
   return b.take();
 }
 
@@ -157,7 +68,7 @@ void check_tuning(Reader& reader, const Node& node, TuningStepOptions& options) 
 Block make_tuning() {
   using Method = reflector::TuningMethod;
   using Objective = reflector::TuningObjective;
-  auto b = step<TuningStepOptions>(
+  auto b = step_builder<TuningStepOptions>(
       "tuning", "Changes the unstressed lengths of ties until the surface is as good as it gets.");
   b.choice(
        "method", [](TuningStepOptions & o) -> auto& { return o.tuning.method; },
@@ -212,8 +123,8 @@ Block make_tuning() {
 }
 
 Block make_modal() {
-  auto b = step<ModalOptions>("modal",
-                              "Natural frequencies and modes about the present state, with its prestress.");
+  auto b = step_builder<ModalOptions>(
+      "modal", "Natural frequencies and modes about the present state, with its prestress.");
   b.key("modes", &ModalOptions::modes).at_least(1).says("Number of modes, from the lowest frequency.");
   b.choice("mass", &ModalOptions::mass,
            std::vector<std::pair<std::string, assembly::MassKind>>{
@@ -233,7 +144,14 @@ void check_rod_shaping(Reader& reader, const Node& node, RodShapingOptions& opti
     for (const char* key : {"shortening", "solver"}) useless(key, "method exact", "method: cantilevers");
   else
     for (const char* key : {"form", "min_step"}) useless(key, "method cantilevers", "method: exact");
-  if (node.find("stiffness") != nullptr) {
+  const Node* reaction = node.find("reaction");
+  if (reaction != nullptr && node.find("stiffness") != nullptr)
+    reader.complain(reaction->label, "both \"stiffness\" and \"reaction\" are given", reader.context(),
+                    "expected one of them: cables that stretch, or constant forces");
+  if (reaction == nullptr) useless("start_angle", "cables", "a step with reaction");
+  if (reaction != nullptr) {
+    for (const char* key : {"form", "min_step", "solver"}) useless(key, "given forces", "a step with cables");
+  } else if (node.find("stiffness") != nullptr) {
     if (exact) useless("form", "given stiffnesses", "a step that looks for them");
     if (!exact) useless("solver", "given stiffnesses", "a step that looks for them");
   } else if (exact) {
@@ -243,10 +161,11 @@ void check_rod_shaping(Reader& reader, const Node& node, RodShapingOptions& opti
 
 Block make_rod_shaping() {
   using Options = RodShapingOptions;
-  auto b = step<Options>("rod_shaping",
-                         "On a rod-umbrella: finds the cables that bend the rods to the meridian; or, with "
-                         "`stiffness`, the shape "
-                         "that given cables bend them to.");
+  auto b = step_builder<Options>(
+      "rod_shaping",
+      "On a rod-umbrella: finds the cables that bend the rods to the meridian; or, with "
+      "`stiffness`, the shape "
+      "that given cables bend them to.");
   b.choice("method", &Options::method,
            std::vector<std::pair<std::string, Options::Method>>{
                {"exact", Options::Method::exact}, {"cantilevers", Options::Method::cantilevers}})
@@ -276,6 +195,21 @@ Block make_rod_shaping() {
       .by_default("none: they are found")
       .says(
           "Stiffness E F of the cables, from the root outwards; the rods are turned to the stop with them.");
+  b.key("reaction", &Options::reaction)
+      .in("N")
+      .by_default("none: cables pull")
+      .says(
+          "Constant forces on the nodes towards the axis, from the root outwards, in place of cables; the "
+          "root is "
+          "at the stop.");
+  b.key("start_angle", &Options::start_angle)
+      .in("degree")
+      .at_least(-360)
+      .at_most(360)
+      .says(
+          "With `reaction`: by how much the rod bends from root to tip in the shape from which the search "
+          "begins; "
+          "a buckled shape needs it.");
   b.key("tolerance", &Options::tolerance)
       .above(0)
       .by_default("1e-10 (exact), 1e-9 (cantilevers)")
@@ -299,8 +233,9 @@ const BlockSet& step_blocks() {
   static const BlockSet set{
       "steps",
       "Steps in order; `kind` says what is done.",
-      {make_form_finding(), make_mesh(), make_equilibrium(), make_tuning(), make_modal(), make_rod_shaping()},
-      {"buckling", "collapse"}};
+      {form_finding_block(), make_mesh(), equilibrium_block(), make_tuning(), make_modal(), buckling_block(),
+       collapse_block(), make_rod_shaping(), inverse_block()},
+      {}};
   return set;
 }
 

@@ -9,23 +9,43 @@ namespace tautline::deck {
 
 namespace {
 
-const std::map<std::string, Member>& reflector_groups() {
-  static const std::map<std::string, Member> table{{"front_net", Member::cable}, {"rear_net", Member::cable},
-                                                   {"ties", Member::cable},      {"diagonals", Member::cable},
-                                                   {"front_rim", Member::beam},  {"rear_rim", Member::beam},
-                                                   {"struts", Member::beam},     {"cloth", Member::membrane}};
+using Members = std::map<std::string, Member>;
+
+const Members& truss_groups() {
+  static const Members table{{"front_net", Member::cable}, {"rear_net", Member::cable},
+                             {"ties", Member::cable},      {"diagonals", Member::cable},
+                             {"front_rim", Member::beam},  {"rear_rim", Member::beam},
+                             {"struts", Member::beam},     {"cloth", Member::membrane}};
   return table;
 }
 
-const std::vector<std::string>& reflector_selections() {
-  static const std::vector<std::string> list{"held_strut", "front_net_nodes", "rear_net_nodes",
-                                             "front_rim_nodes", "rear_rim_nodes"};
+const Members& umbrella_groups() {
+  static const Members table = [] {
+    Members members{{"ties", Member::cable},       {"fork_cords", Member::cable},
+                    {"apex_cords", Member::cable}, {"joint_cords", Member::cable},
+                    {"root_links", Member::beam},  {"intermediate_links", Member::beam},
+                    {"front_links", Member::beam}, {"rear_links", Member::beam},
+                    {"cloth", Member::membrane},   {"hub", Member::mass}};
+    for (const std::string net : {"front_", "rear_"})
+      for (const char* part :
+           {"net", "rings", "connectors", "end_connectors", "peripheral", "end_peripheral",
+            "crossing_a_inner", "crossing_a_outer", "crossing_b_inner", "crossing_b_outer", "end_cords"})
+        members[net + part] = Member::cable;
+    return members;
+  }();
+  return table;
+}
+
+/// What a name may have to stand for, of groups with a section.
+const std::vector<std::string>& element_group_kinds() {
+  static const std::vector<std::string> list{"cable group", "cable or bar group", "line group",
+                                             "membrane group"};
   return list;
 }
 
-/// The number k of "strut_<k>", or -1.
-int strut_number(const std::string& name) {
-  return name.rfind("strut_", 0) == 0 ? list_index(name.substr(6)) : -1;
+bool is_element_group(const std::string& kind) {
+  const auto& kinds = element_group_kinds();
+  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
 
 std::vector<std::string> keys(const Node* node) {
@@ -70,10 +90,12 @@ bool is_line_with_state(Member member) {
 Names::Names(const Deck& deck, const Node& root) : root_(root) {
   const Node* elements = root.at({"model", "elements"});
   is_reflector_ = root.find("reflector") != nullptr && deck.rod_umbrella() == nullptr;
-  if (is_reflector_) {
-    for (const auto& [name, member] : reflector_groups()) element_groups_.push_back(name);
-    if (deck.truss()) n_struts_ = deck.truss()->struts > 0 ? deck.truss()->struts : 3 * deck.truss()->rings;
-    if (deck.truss() && !deck.truss()->diagonals) optional_group_ = "diagonals";
+  umbrella_ = deck.rod_umbrella();
+  if (umbrella_ != nullptr) {
+    for (int k = 1; k <= umbrella_->links; ++k)
+      for (const char* kind : {"link", "parallel"}) element_groups_.push_back(fmt::format("{}_{}", kind, k));
+  } else if (is_reflector_) {
+    describe_reflector(deck);
   } else if (elements != nullptr && root.at({"model", "mesh"}) == nullptr) {
     element_groups_ = keys(elements);
   } else {
@@ -82,13 +104,36 @@ Names::Names(const Deck& deck, const Node& root) : root_(root) {
   collect();
 }
 
+void Names::describe_reflector(const Deck& deck) {
+  reflector_groups_ = deck.umbrella() ? umbrella_groups() : truss_groups();
+  for (const auto& [name, member] : reflector_groups_) element_groups_.push_back(name);
+  if (const auto* umbrella = deck.umbrella()) {
+    selections_ = {"hub_nodes", "tips", "front_net_nodes", "rear_net_nodes"};
+    numbered_ = "spoke_";
+    n_numbered_ = umbrella->spokes;
+    if (!umbrella->end_cords) optional_groups_.insert({"front_end_cords", "rear_end_cords"});
+    if (!umbrella->separate_rings) optional_groups_.insert({"front_rings", "rear_rings"});
+    return;
+  }
+  selections_ = {"held_strut", "front_net_nodes", "rear_net_nodes", "front_rim_nodes", "rear_rim_nodes"};
+  numbered_ = "strut_";
+  if (const auto* truss = deck.truss()) {
+    n_numbered_ = truss->struts > 0 ? truss->struts : 3 * truss->rings;
+    if (!truss->diagonals) optional_groups_ = {"diagonals"};
+  }
+}
+
+int Names::number_of(const std::string& name) const {
+  return is_reflector_ && name.rfind(numbered_, 0) == 0 ? list_index(name.substr(numbered_.size())) : -1;
+}
+
 bool Names::defines(const std::string& group) const {
   return std::find(element_groups_.begin(), element_groups_.end(), group) != element_groups_.end();
 }
 
 std::optional<Member> Names::required_member(const std::string& group) const {
-  const auto found = reflector_groups().find(group);
-  if (!is_reflector_ || found == reflector_groups().end()) return {};
+  const auto found = reflector_groups_.find(group);
+  if (found == reflector_groups_.end()) return {};
   return found->second;
 }
 
@@ -110,18 +155,29 @@ void Names::collect() {
   known_["section"] = keys(root_.find("sections"));
   known_["node"] = keys(root_.at({"model", "nodes"}));
   auto& regions = known_["group"] = element_groups_;
-  if (is_reflector_)
-    regions.insert(regions.end(), reflector_selections().begin(), reflector_selections().end());
+  regions.insert(regions.end(), selections_.begin(), selections_.end());
+  if (umbrella_ != nullptr) {
+    for (const char* name : {"roots", "tips"}) regions.emplace_back(name);
+    for (int rod = 0; rod < umbrella_->rods; ++rod) regions.push_back(fmt::format("rod_{}", rod));
+    for (const auto& name : element_groups_) {
+      known_["line group"].push_back(name);
+      if (name[0] == 'p') known_["cable group"].push_back(name);
+    }
+    known_["load"].emplace_back("turn");
+  }
   for (const auto& name : keys(root_.find("groups"))) {
     const auto what = member(name);
     if (what == Member::cable) known_["cable group"].push_back(name);
+    if (what == Member::cable || what == Member::bar) known_["cable or bar group"].push_back(name);
+    if (what == Member::membrane) known_["membrane group"].push_back(name);
     if (what && (is_line_with_state(*what) || what == Member::beam)) known_["line group"].push_back(name);
     if (root_.at({"groups", name, "section"}) == nullptr && !defines(name)) regions.push_back(name);
   }
   if (const Node* loads = root_.find("loads"))
     for (const auto& load : loads->items)
       if (const Node* name = load.find("name")) known_["load"].push_back(name->text);
-  for (const char* kind : {"cable group", "line group", "load"}) known_[kind];
+  for (const auto& kind : element_group_kinds()) known_[kind];
+  known_["load"];
   for (const auto& [kind, names] : known_) lookup_[kind].insert(names.begin(), names.end());
 }
 
@@ -131,10 +187,12 @@ bool Names::contains(const std::string& kind, const std::string& name) const {
 }
 
 std::string Names::home(const std::string& kind) const {
-  static const std::map<std::string, std::vector<std::string>> paths{
-      {"material", {"materials"}}, {"section", {"sections"}},  {"node", {"model", "nodes"}},
-      {"cable group", {"groups"}}, {"line group", {"groups"}}, {"load", {"loads"}}};
-  const auto path = paths.find(kind);
+  static const std::map<std::string, std::vector<std::string>> paths{{"material", {"materials"}},
+                                                                     {"section", {"sections"}},
+                                                                     {"node", {"model", "nodes"}},
+                                                                     {"groups", {"groups"}},
+                                                                     {"load", {"loads"}}};
+  const auto path = paths.find(is_element_group(kind) ? "groups" : kind);
   const Node* node = path == paths.end() ? nullptr : root_.at(path->second);
   if (node == nullptr || node->label.line == 0) return {};
   return fmt::format(" ({}, line {})", join(path->second, "."), node->label.line);
@@ -142,7 +200,7 @@ std::string Names::home(const std::string& kind) const {
 
 bool Names::is_known(const std::string& kind, const std::string& name) const {
   if (contains(kind, name)) return true;
-  if (kind == "group") return open_ || (strut_number(name) >= 0 && strut_number(name) < n_struts_);
+  if (kind == "group") return open_ || (number_of(name) >= 0 && number_of(name) < n_numbered_);
   if (kind == "node")
     return root_.at({"model", "nodes"}) == nullptr;  // a missing block is complained about elsewhere
   if (kind == "material" || kind == "section") {
@@ -150,13 +208,12 @@ bool Names::is_known(const std::string& kind, const std::string& name) const {
     return block != nullptr && !block->is_mapping();
   }
   // A group whose section is faulty is complained about there.
-  const bool of_elements = kind == "cable group" || kind == "line group";
-  return of_elements && root_.at({"groups", name, "section"}) != nullptr && !member(name);
+  return is_element_group(kind) && root_.at({"groups", name, "section"}) != nullptr && !member(name);
 }
 
 std::string Names::remedy(const std::string& kind, const std::string& name) const {
-  if (kind == "group" && is_reflector_ && strut_number(name) >= 0)
-    return fmt::format("this reflector has strut_0 to strut_{}", n_struts_ - 1);
+  if (kind == "group" && number_of(name) >= 0)
+    return fmt::format("this reflector has {0}0 to {0}{1}", numbered_, n_numbered_ - 1);
   return did_you_mean(name, known(kind));
 }
 
@@ -171,7 +228,7 @@ void check_references(const Names& names, Reader& reader) {
     if (!reference.note.empty()) suggestion += (suggestion.empty() ? "" : "; ") + reference.note;
     std::string message = fmt::format("unknown {} \"{}\"", reference.kind, reference.name);
     const auto member = names.member(reference.name);
-    if (member && (reference.kind == "cable group" || reference.kind == "line group"))
+    if (member && is_element_group(reference.kind))
       message = fmt::format("\"{}\" is no {} (it is made of {})", reference.name, reference.kind,
                             to_string(*member));
     reader.complain(reference.place, message, reference.context, expectation, suggestion);

@@ -104,6 +104,8 @@ Json value_schema(const Keyword& keyword) {
     }
     case Type::points:
       return list_of(tuple_of(number_schema(keyword, "number"), 2));
+    case Type::table:
+      return list_of(list_of(number_schema(keyword, "number")));
     case Type::releases:
       return releases_schema();
     case Type::edges:

@@ -11,9 +11,10 @@ namespace tautline::deck {
 
 namespace {
 
-const std::array<std::pair<const char*, const char*>, 5>& table() {
-  static const std::array<std::pair<const char*, const char*>, 5> decks{
+const std::array<std::pair<const char*, const char*>, 6>& table() {
+  static const std::array<std::pair<const char*, const char*>, 6> decks{
       {{"perimeter-truss", starting_perimeter_truss},
+       {"umbrella", starting_umbrella},
        {"net", starting_net},
        {"membrane", starting_membrane},
        {"frame", starting_frame},
@@ -32,11 +33,9 @@ std::vector<std::string> starting_deck_kinds() {
 std::string starting_deck(const std::string& kind) {
   for (const auto& [name, text] : table())
     if (name == kind) return text;
-  const bool planned = kind == "umbrella";
   Diagnostic diagnostic;
   diagnostic.where.file = "new";
-  diagnostic.message = planned ? fmt::format("kind \"{}\" is not available in this version", kind)
-                               : fmt::format("unknown kind \"{}\"", kind);
+  diagnostic.message = fmt::format("unknown kind \"{}\"", kind);
   diagnostic.expectation = fmt::format("expected one of: {}", join(starting_deck_kinds()));
   diagnostic.suggestion = did_you_mean(kind, starting_deck_kinds());
   throw DeckError({diagnostic});

@@ -5,6 +5,7 @@
 namespace tautline::deck {
 
 extern const char* const starting_perimeter_truss;
+extern const char* const starting_umbrella;
 extern const char* const starting_net;
 extern const char* const starting_membrane;
 extern const char* const starting_frame;

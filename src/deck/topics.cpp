@@ -38,6 +38,8 @@ std::string type_text(const Keyword& keyword) {
       return "number or list of numbers";
     case Type::points:
       return "[[x, y], ...]";
+    case Type::table:
+      return "[[number, ...], ...]";
     case Type::releases:
       return "word or list";
     case Type::edges:

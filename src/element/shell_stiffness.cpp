@@ -1,13 +1,12 @@
 #include "detail/shell_stiffness.hpp"
 
-#include <cmath>
-
 namespace tautline::element::detail {
 
 namespace {
 
-/// Stiffness against drilling in units of G h; docs/theory/shell.md#drilling
-constexpr double drilling_factor = 0.03;
+/// Stiffness of N nodes against drilling in units of G h; docs/theory/shell.md#drilling
+template <int N>
+constexpr double drilling_factor = N == 4 ? 0.03 : 0.01;
 /// Stiffness against the curl of a triangle's director field in units of its bending stiffness.
 constexpr double curl_factor = 0.1;
 
@@ -38,17 +37,17 @@ Mat3 plane_stress(double nu) {
   return D / (1 - nu * nu);
 }
 
+/// Stiffnesses of the section; membrane and bending for strains (11, 22, 2 12).
 struct Rigidity {
   Mat3 membrane, bending;
-  double young, shear, drilling;
+  double young, transverse_shear, in_plane_shear;
 };
 
 Rigidity rigidity(const ShellSection& s) {
   const double h = s.thickness;
   const double G = s.young_modulus / (2 * (1 + s.poisson_ratio));
   const Mat3 D = s.young_modulus * plane_stress(s.poisson_ratio);
-
-  return {h * D, h * h * h / 12 * D, s.young_modulus * h, s.shear_factor * G * h, drilling_factor * G * h};
+  return {h * D, h * h * h / 12 * D, s.young_modulus * h, s.shear_factor * G * h, G * h};
 }
 
 /// Points and unit weights of the 2 x 2 Gauss rule.
@@ -161,14 +160,14 @@ ShellStiffness<4> shell_stiffness<4>(const ShellSection& section, const ShellMod
     const Mat<3, 6> curvature = at.strain * curvature_at(r, s);
     const Mat<2, 4> shear = at.shear * shear_at(r, s);
     result.bending += at.jacobian * curvature.transpose() * (k.bending * curvature);
-    result.shear += at.jacobian * k.shear * shear.transpose() * shear;
+    result.shear += at.jacobian * k.transverse_shear * shear.transpose() * shear;
     area += at.jacobian;
   }
   const Basis centre = basis_at(reference, 0, 0);
   add_membrane(k, centre, reference, area, prestress, result);
-  result.drilling = k.drilling * area / 4;
+  result.drilling = drilling_factor<4> * k.in_plane_shear * area / 4;
   result.moment = k.bending * (centre.strain * curvature_at(0, 0));
-  result.shear_force = k.shear * (centre.shear * shear_at(0, 0));
+  result.shear_force = k.transverse_shear * (centre.shear * shear_at(0, 0));
   return result;
 }
 
@@ -185,7 +184,7 @@ Mat<2> shear_compliance(const Rigidity& k, const Basis& b) {
   const double nu = k.bending(0, 1) / flexural;
   const Mat<2> bending_of_bubble =
       4.05 * flexural * ((1 + nu) / 2 * gradients + (1 - nu) / 2 * gradients.trace() * Mat<2>::Identity());
-  return Mat<2>::Identity() / k.shear + bending_of_bubble.inverse() / 4;
+  return Mat<2>::Identity() / k.transverse_shear + bending_of_bubble.inverse() / 4;
 }
 
 }  // namespace
@@ -208,10 +207,10 @@ ShellStiffness<3> shell_stiffness<3>(const ShellSection& section, const ShellMod
   result.shear.setZero();
   result.shear.topLeftCorner<2, 2>() = area * b.shear.transpose() * result.shear_force.leftCols<2>();
   const Mat<2> metric = b.shear.transpose() * b.shear;  // contravariant
-  const double by_shear = k.shear * area / 18 * (metric(0, 0) + metric(1, 1) + metric(0, 1));
+  const double by_shear = k.transverse_shear * area / 18 * (metric(0, 0) + metric(1, 1) + metric(0, 1));
   const double by_bending = curl_factor * k.bending(0, 0) * 4 * area / (b.jacobian * b.jacobian);
   result.shear(2, 2) = by_shear * by_bending / (by_shear + by_bending);
-  result.drilling = k.drilling * area / 3;
+  result.drilling = drilling_factor<3> * k.in_plane_shear * area / 3;
   result.rotation_of_node.setZero();
   return result;
 }

@@ -7,32 +7,30 @@
 #include <Eigen/SparseCore>
 #include <array>
 #include <formfinding/net_system.hpp>
-#include <vector>
+#include <tautline/formfinding/constraints.hpp>
 
 namespace tautline::formfinding {
 
-/// A net in the shape that some force densities give it.
-struct NetState {
-  VecX force_density;     ///< [N/m]
-  Coordinates nodes;      ///< all nodes [m]
-  Coordinates vectors;    ///< second minus first end of every branch [m]
-  VecX length;            ///< [m]
-  VecX slope_x, slope_y;  ///< dz/dx, dz/dy of the surface at the free nodes; empty without a surface
-};
-
-/// Rows of constraints, value - target = 0 each. A new kind of constraint is one more function that appends
-/// rows.
+/// Rows of constraints, value - target = 0 each, divided by a scale of their own.
 struct ConstraintRows {
   using Entries = std::vector<Eigen::Triplet<double>>;  ///< (row, branch, derivative)
   std::vector<double> value, target;
+  std::vector<double> scale;  ///< [unit of the value]
   Entries by_force_density;
-  std::array<Entries, 3> by_vector;  ///< one for each direction
+  std::array<Entries, 3> by_vector;         ///< one for each direction
+  std::vector<std::array<int, 2>> centred;  ///< (first row, count): only differences from the mean count
 
   /// Right-hand side r = target - value of eq. (2.16).
   VecX missing() const;
 };
 
-/// Tension q L = target of every branch whose target is not NaN (eqs 2.62, 2.63) [N].
+/// Tension q L = target of every branch whose target is not NaN (eqs 2.62, 2.63) [N], not scaled.
 void add_tensions(const NetState& state, const VecX& target, ConstraintRows& rows);
+
+/// @brief Appends the rows of one constraint (2.62-2.71).
+/// @param[in] axial_stiffness  EA of every branch [N]; needed for unstressed lengths
+/// @param[in] force_scale  by which rows without a force of their own are divided [N]
+void add_constraint(const NetSystem& system, const NetState& state, const Constraint& constraint,
+                    const VecX& axial_stiffness, double force_scale, ConstraintRows& rows);
 
 }  // namespace tautline::formfinding

@@ -1,49 +1,24 @@
+#include <tautline/formfinding/force_density.hpp>
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <formfinding/jacobian.hpp>
-#include <formfinding/lsqr.hpp>
-#include <limits>
+#include <formfinding/balance.hpp>
+#include <formfinding/constraint_search.hpp>
+#include <formfinding/position_search.hpp>
 #include <tautline/core/error.hpp>
-#include <tautline/core/interrupt.hpp>
-#include <tautline/formfinding/force_density.hpp>
 #include <utility>
 
 namespace tautline::formfinding {
 
 namespace {
 
-constexpr double inner_tolerance = 1e-10;  // of the linear step: far below the quadratic error of Newton
-constexpr int max_relaxations = 5;         // alpha = 1, 1/4, 1/64, 1/4096, 1/2^20
-constexpr int largest_dense = 2000;        // rows of G^T G for which the condition number is computed
-
-Points to_points(const Coordinates& nodes) {
-  Points points(nodes.rows());
-  for (Eigen::Index node = 0; node < nodes.rows(); ++node) points[node] = nodes.row(node);
-  return points;
-}
-
-/// Shape of the net (eq. 3.9 with a surface, eq. 2.12 without) and what the constraints need to know of it.
-NetState shape(NetSystem& system, const VecX& force_density, const Surface* surface) {
-  NetState state;
-  state.force_density = force_density;
-  system.factorise(force_density);
-  state.nodes = system.equilibrium(force_density);
-  if (surface) {
-    state.slope_x.resize(system.n_free());
-    state.slope_y.resize(system.n_free());
-    for (int i = 0; i < system.n_free(); ++i) {
-      auto node = state.nodes.row(system.free_nodes()[i]);
-      const Vec3 z = surface->height_and_slope(node.x(), node.y());
-      node.z() = z[0];
-      state.slope_x[i] = z[1];
-      state.slope_y[i] = z[2];
-    }
-  }
-  state.vectors = branch_vectors(system.net(), state.nodes);
-  state.length = state.vectors.rowwise().norm();
-  return state;
-}
+constexpr int largest_dense = 2000;  // rows of G^T G for which the condition number is computed
+constexpr int many_branches = 2000;  // from here on the positions are the unknowns where they can be
+constexpr double balance_limit =
+    1e-9;  // of the largest force out of balance, relative to the largest tension
+constexpr double position_balance = 1e-10;  // likewise, aimed at where the positions are the unknowns
 
 void check_targets(const Net& net, const VecX& target, const ForceDensityOptions& options) {
   if (target.size() != static_cast<Eigen::Index>(net.branches.size()))
@@ -56,153 +31,164 @@ void check_targets(const Net& net, const VecX& target, const ForceDensityOptions
   if (!(options.initial_force_density > 0))
     throw ModelError(
         fmt::format("the initial force density must be positive, not {} N/m", options.initial_force_density));
+  const bool on_positions =
+      options.method == TensionMethod::position_newton || options.method == TensionMethod::fixed_point;
+  if (on_positions && target.array().isNaN().any())
+    throw ModelError("with the positions as unknowns every branch needs a target tension");
 }
 
-/// Newton's iteration on the force densities.
-class TensionSearch {
- public:
-  TensionSearch(const Net& net, const VecX& target, const Surface* surface,
-                const ForceDensityOptions& options)
-      : system_(net), target_(target), surface_(surface), options_(options) {
-    largest_target_ = 0;
-    for (const double T : target)
-      if (!std::isnan(T)) largest_target_ = std::max(largest_target_, T);
-  }
-
-  ForceDensityResult run(const std::function<void(int, double)>& progress);
-
- private:
-  struct Trial {
-    NetState state;
-    ConstraintRows rows;
-    VecX missing;
-  };
-
-  Trial evaluate(const VecX& force_density);
-  /// q + alpha dq with the first alpha of eq. (2.25) that satisfies (2.26); false if none does.
-  bool take_step(const VecX& dq);
-  ConstraintJacobian jacobian() const;
-  double error() const { return now_.missing.size() > 0 ? now_.missing.cwiseAbs().maxCoeff() : 0.0; }
-  void record_residual();
-  void record_iteration();
-  void finish(bool stuck);
-
-  NetSystem system_;
-  const VecX& target_;
-  const Surface* surface_;
-  const ForceDensityOptions& options_;
-  double largest_target_;
-  Trial now_;
-  ForceDensityResult result_;
-};
-
-TensionSearch::Trial TensionSearch::evaluate(const VecX& force_density) {
-  Trial trial;
-  trial.state = shape(system_, force_density, surface_);
-  add_tensions(trial.state, target_, trial.rows);
-  trial.missing = trial.rows.missing();
-  return trial;
+double largest_target(const VecX& target) {
+  double largest = 0;
+  for (const double T : target)
+    if (!std::isnan(T)) largest = std::max(largest, T);
+  return largest;
 }
 
-bool TensionSearch::take_step(const VecX& dq) {
-  for (int i = 1; i <= max_relaxations; ++i) {
-    const double alpha = std::ldexp(1.0, -i * (i - 1));
-    try {
-      Trial trial = evaluate(now_.state.force_density + alpha * dq);
-      if (!(trial.missing.norm() <= now_.missing.norm())) continue;
-      now_ = std::move(trial);
-      result_.step_relaxation.push_back(alpha);
-      return true;
-    } catch (const ModelError&) {
-      // The step led to a singular net or off the surface: too long.
-    }
-  }
-  return false;
-}
-
-ConstraintJacobian TensionSearch::jacobian() const {
-  const bool z_follows_surface = surface_ && options_.jacobian == SurfaceJacobian::consistent;
-  return {system_, now_.state, now_.rows, z_follows_surface};
-}
-
-void TensionSearch::record_residual() {
-  result_.constraint_residual.push_back(error());
-  result_.constraint_residual_norm.push_back(now_.missing.norm());
-}
-
-void TensionSearch::record_iteration() {
-  ++result_.iterations;
-  record_residual();
+Vec3 coordinate_norm(const NetSystem& system, const NetState& state) {
   Vec3 squares = Vec3::Zero();
-  for (const int node : system_.free_nodes()) squares += now_.state.nodes.row(node).cwiseAbs2();
-  result_.coordinate_norm.push_back(squares.cwiseSqrt());
+  for (const int node : system.free_nodes()) squares += state.nodes.row(node).cwiseAbs2().transpose();
+  return squares.cwiseSqrt();
 }
 
-ForceDensityResult TensionSearch::run(const std::function<void(int, double)>& progress) {
-  now_ = evaluate(VecX::Constant(target_.size(), options_.initial_force_density));
-  record_residual();
-  bool stuck = false;
-  while (!stuck && error() > options_.tolerance * largest_target_ &&
-         result_.iterations < options_.max_iterations) {
-    if (interrupt_requested()) throw Interrupted();
-    const int max_inner = 2 * static_cast<int>(now_.missing.size() + target_.size());
-    stuck = !take_step(least_squares(jacobian(), now_.missing, inner_tolerance, max_inner));
-    if (stuck) break;
-    record_iteration();
-    if (progress) progress(result_.iterations, error());
-  }
-  finish(stuck);
-  return std::move(result_);
+void take_shape(const NetSystem& system, const NetState& state, ForceDensityResult& result) {
+  result.nodes = to_points(state.nodes);
+  result.force_density = state.force_density;
+  result.tension = state.force_density.cwiseProduct(state.length);
+  const Balance at_nodes = balance(system, state);
+  result.out_of_balance = at_nodes.out_of_balance;
+  result.residual_z.resize(static_cast<Eigen::Index>(at_nodes.reaction.size()));
+  for (std::size_t i = 0; i < at_nodes.reaction.size(); ++i)
+    result.residual_z[static_cast<Eigen::Index>(i)] = at_nodes.reaction[i].z();
 }
 
-void TensionSearch::finish(bool stuck) {
-  const NetState& state = now_.state;
-  result_.nodes = to_points(state.nodes);
-  result_.force_density = state.force_density;
-  result_.tension = state.force_density.cwiseProduct(state.length);
-  const Coordinates force = nodal_forces(system_.net(), state.force_density, state.vectors);
-  result_.residual_z = -force.col(2);
-  const int directions = surface_ ? 2 : 3;
-  for (const int node : system_.free_nodes())
-    result_.out_of_balance = std::max(result_.out_of_balance, force.row(node).head(directions).norm());
-
-  const double limit = options_.tolerance * largest_target_;
-  const double largest_tension = result_.tension.size() > 0 ? result_.tension.cwiseAbs().maxCoeff() : 0.0;
-  const double balance_limit = 1e-9 * largest_tension;
-  if (error() > limit)
-    result_.reason = fmt::format("{} {} iterations: largest tension error {:.3g} N > {:.3g} N",
-                                 stuck ? "no step reduces the error after" : "stopped after",
-                                 result_.iterations, error(), limit);
-  else if (result_.out_of_balance > balance_limit)
-    result_.reason = fmt::format("tensions are met, but the largest force out of balance {:.3g} N > {:.3g} N",
-                                 result_.out_of_balance, balance_limit);
+/// Sets `converged` and `reason`. @param[in] error  largest tension error [N]
+void judge(double error, double limit, bool stuck, ForceDensityResult& result) {
+  const double largest_tension = result.tension.size() > 0 ? result.tension.cwiseAbs().maxCoeff() : 0.0;
+  const double balanced = balance_limit * largest_tension;
+  if (error > limit)
+    result.reason = fmt::format("{} {} iterations: largest tension error {:.3g} N > {:.3g} N",
+                                stuck ? "no step reduces the error after" : "stopped after",
+                                result.iterations, error, limit);
+  else if (result.out_of_balance > balanced)
+    result.reason = fmt::format("tensions are met, but the largest force out of balance {:.3g} N > {:.3g} N",
+                                result.out_of_balance, balanced);
   else
-    result_.reason = fmt::format("largest tension error {:.3g} N <= {:.3g} N", error(), limit);
-  result_.converged = error() <= limit && result_.out_of_balance <= balance_limit;
+    result.reason = fmt::format("largest tension error {:.3g} N <= {:.3g} N", error, limit);
+  result.converged = error <= limit && result.out_of_balance <= balanced;
+}
 
-  if (options_.estimate_condition && now_.missing.size() > 0 && now_.missing.size() <= largest_dense) {
-    system_.factorise(state.force_density);  // a rejected step may have left another factor behind
-    result_.condition_number = condition_number(jacobian());
-  }
+ForceDensityResult search_force_densities(NetSystem& system, const VecX& target,
+                                          const ForceDensityOptions& options,
+                                          const std::function<void(int, double)>& progress) {
+  ForceDensityResult result;
+  SearchSettings settings;
+  const double limit = settings.tolerance = options.tolerance * largest_target(target);
+  settings.max_iterations = options.max_iterations;
+  settings.z_follows_surface = options.jacobian == SurfaceJacobian::consistent;
+  ConstraintSearch search(
+      system,
+      [&](const NetState& state) {
+        ConstraintRows rows;
+        add_tensions(state, target, rows);
+        // The first state is recorded where it is made: before the first iteration.
+        if (result.constraint_residual.empty()) {
+          result.constraint_residual.push_back(rows.missing().lpNorm<Eigen::Infinity>());
+          result.constraint_residual_norm.push_back(rows.missing().norm());
+        }
+        return rows;
+      },
+      settings);
+  search.run(VecX::Constant(target.size(), options.initial_force_density), [&] {
+    result.constraint_residual.push_back(search.error());
+    result.constraint_residual_norm.push_back(search.missing().norm());
+    result.coordinate_norm.push_back(coordinate_norm(system, search.state()));
+    if (progress) progress(search.iterations(), search.error());
+  });
+  result.iterations = search.iterations();
+  result.inner_iterations = search.inner_iterations();
+  result.step_relaxation = search.relaxation();
+  take_shape(system, search.state(), result);
+  judge(search.error(), limit, search.stuck(), result);
+  const auto n_rows = search.missing().size();
+  if (options.estimate_condition && n_rows > 0 && n_rows <= largest_dense)
+    result.condition_number = condition_number(search.jacobian());
+  return result;
+}
+
+ForceDensityResult search_positions(NetSystem& system, const VecX& target, const ForceDensityOptions& options,
+                                    const std::function<void(int, double)>& progress) {
+  ForceDensityResult result;
+  const double largest = largest_target(target);
+  const double limit = std::max(position_balance, options.tolerance) * largest;
+  const VecX start = VecX::Constant(target.size(), options.initial_force_density);
+  PositionResult found =
+      options.method == TensionMethod::fixed_point
+          ? find_fixed_point(system, target, start, limit, options.max_iterations, progress)
+          : find_positions(system, target, start, limit, options.max_iterations, progress);
+  result.iterations = found.iterations;
+  result.inner_iterations = found.inner_iterations;
+  result.constraint_residual = result.constraint_residual_norm = found.residual;
+  result.step_relaxation = std::move(found.relaxation);
+  result.coordinate_norm.assign(found.iterations, coordinate_norm(system, found.state));
+  take_shape(system, found.state, result);
+  result.converged = found.converged;
+  result.reason = found.reason(limit);
+  return result;
+}
+
+/// The Jacobian and the condition number belong to the step of smallest norm.
+TensionMethod choose_method(const Net& net, const VecX& target, const Surface* surface,
+                            const ForceDensityOptions& options) {
+  if (options.method != TensionMethod::automatic) return options.method;
+  const bool well_conditioned = surface != nullptr && static_cast<int>(net.branches.size()) < many_branches;
+  const bool on_positions = !well_conditioned && !target.array().isNaN().any() &&
+                            options.jacobian == SurfaceJacobian::consistent && !options.estimate_condition;
+  return on_positions ? TensionMethod::position_newton : TensionMethod::step_of_smallest_norm;
 }
 
 }  // namespace
 
-Points solve_linear(const Net& net, const VecX& force_density, const Surface* surface) {
-  check(net);
+LinearForm find_linear_form(const Net& net, const VecX& force_density, const Surface* surface) {
+  check(net, surface);
   if (force_density.size() != static_cast<Eigen::Index>(net.branches.size()))
     throw ModelError(fmt::format("the net has {} branches, but {} force densities", net.branches.size(),
                                  force_density.size()));
-  NetSystem system(net);
-  return to_points(shape(system, force_density, surface).nodes);
+  NetSystem system(net, surface);
+  system.factorise(force_density);
+  const NetState state = system.equilibrium(force_density);
+  LinearForm form;
+  form.nodes = to_points(state.nodes);
+  form.length = state.length;
+  form.tension = state.force_density.cwiseProduct(state.length);
+  Balance at_nodes = balance(system, state);
+  form.reaction = std::move(at_nodes.reaction);
+  form.out_of_balance = at_nodes.out_of_balance;
+  form.negative_directions = system.negative_pivots();
+  form.warnings = stability_warnings(system, state);
+  return form;
+}
+
+Points solve_linear(const Net& net, const VecX& force_density, const Surface* surface) {
+  return find_linear_form(net, force_density, surface).nodes;
 }
 
 ForceDensityResult find_tensions(const Net& net, const VecX& target, const Surface* surface,
                                  const ForceDensityOptions& options,
                                  const std::function<void(int, double)>& progress) {
-  check(net);
+  check(net, surface);
   check_targets(net, target, options);
-  return TensionSearch(net, target, surface, options).run(progress);
+  NetSystem system(net, surface);
+  ForceDensityOptions chosen = options;
+  chosen.method = choose_method(net, target, surface, options);
+  ForceDensityResult result;
+  if (chosen.method != TensionMethod::step_of_smallest_norm) {
+    result = search_positions(system, target, chosen, progress);
+    result.method = chosen.method;
+    // Where the positions are not determined or Newton's method strays, the published method has the last
+    // word.
+    if (result.converged || options.method != TensionMethod::automatic) return result;
+  }
+  return search_force_densities(system, target, options, progress);
 }
 
 }  // namespace tautline::formfinding

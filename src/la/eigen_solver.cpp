@@ -10,65 +10,27 @@
 #include <utility>
 
 #include "la/check.hpp"
+#include "la/eigen_problem.hpp"
 #include "la/eigen_refinement.hpp"
 
 namespace tautline::la {
 
 namespace {
 
-class Handle {
- public:
-  Handle() { check(EPSCreate(PETSC_COMM_WORLD, &eps_), "EPSCreate"); }
-  ~Handle() { EPSDestroy(&eps_); }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  ::EPS get() const { return eps_; }
-
- private:
-  ::EPS eps_ = nullptr;
-};
-
-/// A start vector that shares no symmetry of any structure (one that does never meets the modes that do not),
-/// the same in every run.
-void set_start(::EPS eps, const SymmetricMatrix& stiffness) {
-  ::Vec start = nullptr;
-  check(MatCreateVecs(stiffness.handle(), &start, nullptr), "MatCreateVecs");
-  PetscInt first = 0, last = 0;
-  check(VecGetOwnershipRange(start, &first, &last), "VecGetOwnershipRange");
-  for (PetscInt i = first; i < last; ++i)
-    check(VecSetValue(start, i, 1 + std::sin(12.9898 * (i + 1)), INSERT_VALUES), "VecSetValue");
-  check(VecAssemblyBegin(start), "VecAssemblyBegin");
-  check(VecAssemblyEnd(start), "VecAssemblyEnd");
-  check(EPSSetInitialSpace(eps, 1, &start), "EPSSetInitialSpace");
-  check(VecDestroy(&start), "VecDestroy");
-}
-
 void configure(::EPS eps, const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count,
                double shift) {
-  check(EPSSetOperators(eps, stiffness.handle(), mass.handle()), "EPSSetOperators");
-  check(EPSSetProblemType(eps, EPS_GHEP), "EPSSetProblemType");
+  set_problem(eps, stiffness, mass, count);
   check(EPSSetTarget(eps, shift), "EPSSetTarget");
   check(EPSSetWhichEigenpairs(eps, EPS_TARGET_MAGNITUDE), "EPSSetWhichEigenpairs");
-  check(EPSSetDimensions(eps, count, PETSC_DEFAULT, PETSC_DEFAULT), "EPSSetDimensions");
-  check(EPSSetTolerances(eps, 1e-12, 500), "EPSSetTolerances");
   ::ST transform = nullptr;
-  ::KSP ksp = nullptr;
-  ::PC pc = nullptr;
   check(EPSGetST(eps, &transform), "EPSGetST");
   check(STSetType(transform, STSINVERT), "STSetType");
-  check(STSetMatStructure(transform, SUBSET_NONZERO_PATTERN), "STSetMatStructure");
-  check(STGetKSP(transform, &ksp), "STGetKSP");
-  check(KSPSetType(ksp, KSPPREONLY), "KSPSetType");
-  check(KSPGetPC(ksp, &pc), "KSPGetPC");
-  check(PCSetType(pc, PCCHOLESKY), "PCSetType");
-  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS), "PCFactorSetMatSolverType");
-  set_start(eps, stiffness);
 }
 
 /// The `count` pairs nearest to the shift that SLEPc finds outside the space of `known`.
 EigenPairs find_pairs(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count, double shift,
                       const std::vector<Vector>& known) {
-  const Handle eps;
+  const EigenHandle eps;
   configure(eps.get(), stiffness, mass, count, shift);
   std::vector<::Vec> space;
   for (const auto& vector : known) space.push_back(vector.handle());

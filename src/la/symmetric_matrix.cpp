@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 #include <petscmat.h>
@@ -63,25 +64,42 @@ void SymmetricMatrix::multiply(const Vector& x, Vector& y) const {
   check(MatMult(mat_, x.handle(), y.handle()), "MatMult");
 }
 
-std::vector<long double> SymmetricMatrix::multiply_extended(const std::vector<double>& x) const {
-  std::vector<long double> y(x.size(), 0.0L);
+template <class Visit>
+void SymmetricMatrix::for_each_upper(const Visit& visit) const {
   check(MatGetRowUpperTriangular(mat_), "MatGetRowUpperTriangular");
   for (int row = 3 * layout_.first; row < 3 * (layout_.first + layout_.local); ++row) {
     PetscInt n = 0;
     const PetscInt* columns = nullptr;
     const PetscScalar* values = nullptr;
     check(MatGetRow(mat_, row, &n, &columns, &values), "MatGetRow");
-    for (PetscInt k = 0; k < n; ++k) {
-      if (columns[k] < row) continue;
-      y[row] += static_cast<long double>(values[k]) * x[columns[k]];
-      if (columns[k] > row) y[columns[k]] += static_cast<long double>(values[k]) * x[row];
-    }
+    for (PetscInt k = 0; k < n; ++k)
+      if (columns[k] >= row) visit(row, columns[k], values[k]);
     check(MatRestoreRow(mat_, row, &n, &columns, &values), "MatRestoreRow");
   }
   check(MatRestoreRowUpperTriangular(mat_), "MatRestoreRowUpperTriangular");
+}
+
+std::vector<long double> SymmetricMatrix::multiply_extended(const std::vector<double>& x) const {
+  std::vector<long double> y(x.size(), 0.0L);
+  for_each_upper([&](int row, int column, double value) {
+    y[row] += static_cast<long double>(value) * x[column];
+    if (column > row) y[column] += static_cast<long double>(value) * x[row];
+  });
   MPI_Allreduce(MPI_IN_PLACE, y.data(), static_cast<int>(y.size()), MPI_LONG_DOUBLE, MPI_SUM,
                 PETSC_COMM_WORLD);
   return y;
+}
+
+std::vector<double> SymmetricMatrix::absolute_row_sums() const {
+  std::vector<double> sums(static_cast<std::size_t>(3 * layout_.total), 0.0);
+  for_each_upper([&](int row, int column, double value) {
+    sums[row] += std::abs(value);
+    if (column > row) sums[column] += std::abs(value);
+  });
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM,
+                PETSC_COMM_WORLD);
+  const auto first = sums.begin() + 3 * layout_.first;
+  return {first, first + 3 * layout_.local};
 }
 
 void SymmetricMatrix::shift(double value) {

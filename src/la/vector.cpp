@@ -66,6 +66,22 @@ double Vector::dot(const Vector& other) const {
   return value;
 }
 
+void Vector::copy(const Vector& other) {
+  check(VecCopy(other.vec_, vec_), "VecCopy");
+}
+
+void Vector::scale(double factor) {
+  check(VecScale(vec_, factor), "VecScale");
+}
+
+void Vector::add(double factor, const Vector& other) {
+  check(VecAXPY(vec_, factor, other.vec_), "VecAXPY");
+}
+
+void Vector::multiply_entries(const Vector& by) {
+  check(VecPointwiseMult(vec_, vec_, by.vec_), "VecPointwiseMult");
+}
+
 void Vector::read(std::span<double> local) const {
   const PetscScalar* array = nullptr;
   check(VecGetArrayRead(vec_, &array), "VecGetArrayRead");

@@ -42,6 +42,18 @@ double length(const Model& model, const std::array<int, 2>& nodes) {
 
 }  // namespace
 
+Load scaled(const Load& load, double factor) {
+  Load result = load;
+  for (Vec3* vector : {&result.force, &result.moment, &result.line_force, &result.line_moment,
+                       &result.surface_force, &result.acceleration})
+    *vector *= factor;
+  for (auto* motion : {&result.displacement, &result.rotation})
+    if (*motion) **motion *= factor;
+  result.pressure *= factor;
+  result.temperature_change *= factor;
+  return result;
+}
+
 int Model::find_group(const std::string& name) const {
   for (int i = 0; i < static_cast<int>(groups.size()); ++i)
     if (groups[i].name == name) return i;

@@ -7,6 +7,14 @@ State State::reference(const Model& model) {
           Points(model.links.size(), Vec3::Zero())};
 }
 
+State State::initial(const Model& model) {
+  State state = reference(model);
+  if (model.initial.empty()) return state;
+  state.displacement = model.initial.displacement;
+  state.rotation = model.initial.rotation;
+  return state;
+}
+
 Points positions(const Model& model, const State& state) {
   Points result(model.nodes.size());
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = model.nodes[i] + state.displacement[i];

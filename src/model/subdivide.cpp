@@ -1,5 +1,6 @@
 #include <tautline/model/subdivide.hpp>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
@@ -356,10 +357,51 @@ class Subdivider {
   std::vector<FacetNodes> parts_;  // of the facet being split
 };
 
+/// Initial motion of the nodes along beams: the cubic through both ends that leaves them as they have turned.
+void bend_beams(const Model& structure, Model& mesh) {
+  const auto& start = structure.initial;
+  for (const auto& beam : mesh.beams) {
+    const auto& parent = structure.beams[beam.parent];
+    const auto [a, b] = parent.nodes;
+    const Vec3 axis = structure.nodes[b] - structure.nodes[a];
+    const Vec3 from = structure.nodes[a] + start.displacement[a],
+               to = structure.nodes[b] + start.displacement[b];
+    const Vec3 leave = start.rotation[a] * axis, arrive = start.rotation[b] * axis;
+    for (int end = 0; end < 2; ++end) {
+      const double t = (beam.span[end] - parent.span[0]) / (parent.span[1] - parent.span[0]);
+      if (t < 1e-9 || t > 1 - 1e-9) continue;
+      const double s = 1 - t;
+      const Vec3 at =
+          (1 + 2 * t) * s * s * from + t * s * s * leave + t * t * (3 - 2 * t) * to - t * t * s * arrive;
+      const Vec3 slope = 6 * t * s * (to - from) + s * (1 - 3 * t) * leave + t * (3 * t - 2) * arrive;
+      const Eigen::Quaterniond first(start.rotation[a]), last(start.rotation[b]);
+      const Mat3 turned = first.slerp(t, last).toRotationMatrix();
+      const int node = beam.nodes[end];
+      mesh.initial.displacement[node] = at - mesh.nodes[node];
+      mesh.initial.rotation[node] =
+          Eigen::Quaterniond::FromTwoVectors(turned * axis, slope).toRotationMatrix() * turned;
+    }
+  }
+}
+
+/// The mesh of the moved structure has the same nodes elsewhere.
+void carry_initial_motion(const Model& structure, const SubdivideOptions& options, Model& mesh) {
+  Model moved = structure;
+  for (std::size_t i = 0; i < moved.nodes.size(); ++i) moved.nodes[i] += structure.initial.displacement[i];
+  const Points there = Subdivider(moved, options).run().nodes;
+  mesh.initial.displacement.resize(there.size());
+  for (std::size_t i = 0; i < there.size(); ++i) mesh.initial.displacement[i] = there[i] - mesh.nodes[i];
+  mesh.initial.rotation = structure.initial.rotation;
+  mesh.initial.rotation.resize(there.size(), Mat3::Identity());
+  bend_beams(structure, mesh);
+}
+
 }  // namespace
 
 Model subdivide(const Model& structure, const SubdivideOptions& options) {
-  return Subdivider(structure, options).run();
+  Model mesh = Subdivider(structure, options).run();
+  if (!structure.initial.empty()) carry_initial_motion(structure, options, mesh);
+  return mesh;
 }
 
 }  // namespace tautline::model

@@ -94,9 +94,11 @@ Chapter tell_step(const Json& step, double mass) {
                   {},
                   group_tables(member(step, "groups"))};
   if (const auto seconds = number(member(step, "wall_seconds"))) chapter.time = show(seconds, "s", 1, 3);
-  for (Table& table : std::array{convergence_table(step), stage_table(member(step, "stages")),
-                                 pass_table(member(step, "iterations")), mode_table(step, mass),
-                                 buckling_table(step), rod_table(step), path_table(member(step, "path"))})
+  for (Table& table : std::array{
+           convergence_table(step), stage_table(member(step, "stages")),
+           pass_table(member(step, "iterations")), mode_table(step, mass), buckling_table(step),
+           rod_table(step), space_rods_table(member(step, "rods")), unknown_table(member(step, "unknowns")),
+           target_table(member(step, "targets")), path_table(member(step, "path"))})
     if (!table.rows.empty()) chapter.tables.push_back(std::move(table));
   return chapter;
 }

@@ -239,6 +239,43 @@ Table rod_table(const Json& step) {
   return table;
 }
 
+Table space_rods_table(const Json& rods) {
+  Table table = numbered_rows("Nodes of the rods in space", "node", member(rods, "X"), 1);
+  if (table.rows.empty()) return table;
+  add_list(table, "X [m]", member(rods, "X"), 5);
+  add_list(table, "Y [m]", member(rods, "Y"), 5);
+  add_list(table, "theta [rad]", member(rods, "theta"), 4);
+  add_list(table, "cable pulls [N]", member(rods, "reaction"), 5);
+  add_list(table, "strain [-]", member(rods, "strain"), 4);
+  add_list(table, "E F [N]", member(rods, "stiffness"), 5);
+  return table;
+}
+
+Table unknown_table(const Json& unknowns) {
+  static constexpr Column columns[] = {{"cables", "cables"},
+                                       {"start", "start [m or N]"},
+                                       {"found", "found", 1, true},
+                                       {"tension_min", "least tension [N]"},
+                                       {"tension_max", "largest", 1, true}};
+  constexpr std::size_t most = 40;
+  Table table{"Cables found", {"unknown"}, {}};
+  if (unknowns.size() > most) return table;
+  table = numbered_table("Cables found", "unknown", unknowns, 1, columns);
+  for (std::size_t i = 0; i < table.rows.size(); ++i)
+    table.rows[i][0] = fmt::format("{}, {}", text(member(unknowns[i], "name")),
+                                   words(text(member(unknowns[i], "quantity"))));
+  return table;
+}
+
+Table target_table(const Json& targets) {
+  static constexpr Column columns[] = {
+      {"nodes", "nodes"}, {"miss_max", "largest miss [mm]", 1e3}, {"miss_rms", "RMS [mm]", 1e3}};
+  Table table = numbered_table("Targets", "target", targets, 1, columns);
+  for (std::size_t i = 0; i < table.rows.size(); ++i)
+    table.rows[i][0] = fmt::format("{} {}", i + 1, text(member(targets[i], "quantity")));
+  return table;
+}
+
 Table path_table(const Json& path) {
   static constexpr Column columns[] = {{"lambda", "load factor"}, {"monitor", "monitor [m]"}};
   return numbered_table("Load path", "point", path, 0, columns);

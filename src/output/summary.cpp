@@ -97,6 +97,9 @@ class Summary {
     const std::string indent(label_, ' ');
     if (const auto nodes = detail::rod_table(step); !nodes.rows.empty())
       append(detail::table_lines(nodes, most_passes), indent);
+    for (const auto& found :
+         {detail::unknown_table(member(step, "unknowns")), detail::target_table(member(step, "targets"))})
+      if (!found.rows.empty()) append(detail::table_lines(found, most_passes), indent);
     if (const auto passes = detail::pass_table(member(step, "iterations")); !passes.rows.empty())
       append(detail::table_lines(passes, most_passes), indent);
   }

@@ -6,8 +6,8 @@
 
 namespace tautline::reflector {
 
-Paraboloid::Paraboloid(double aperture, double focal_length, double clearance)
-    : aperture_(aperture), focal_length_(focal_length), offset_(clearance + aperture / 2) {
+Paraboloid::Paraboloid(double aperture, double focal_length, double clearance, double raised)
+    : aperture_(aperture), focal_length_(focal_length), offset_(clearance + aperture / 2), raised_(raised) {
   if (!(std::isfinite(aperture) && aperture > 0))
     throw ModelError(fmt::format("the aperture must be positive, not {} m", aperture));
   if (!(std::isfinite(focal_length) && focal_length > 0))
@@ -34,7 +34,7 @@ Vec3 Paraboloid::height_and_slope(double x, double y) const {
         "the line x = {:.6g} m, y = {:.6g} m along the aperture's normal misses the paraboloid", x, y));
   const double root = std::sqrt(discriminant);
   const double z = 2 * C / (root - B);
-  return {z, (2 * along * c - 2 * s * c * z) / root, 2 * y / root};
+  return {z + raised_, (2 * along * c - 2 * s * c * z) / root, 2 * y / root};
 }
 
 double Paraboloid::height(double x, double y) const {
@@ -47,9 +47,14 @@ Vec3 Paraboloid::axis() const {
 
 Vec3 Paraboloid::to_parent(const Vec3& point) const {
   const double s = std::sin(tilt_), c = std::cos(tilt_);
-  const double along = point.x() + shift_;
-  return {offset_ + along * c - point.z() * s, point.y(),
-          offset_ * offset_ / (4 * focal_length_) + along * s + point.z() * c};
+  const double along = point.x() + shift_, z = point.z() - raised_;
+  return {offset_ + along * c - z * s, point.y(),
+          offset_ * offset_ / (4 * focal_length_) + along * s + z * c};
+}
+
+Paraboloid make_paraboloid(const DishOptions& options) {
+  const double clearance = std::isnan(options.clearance) ? -options.aperture / 2 : options.clearance;
+  return {options.aperture, options.focal_length, clearance, options.surface_height};
 }
 
 }  // namespace tautline::reflector

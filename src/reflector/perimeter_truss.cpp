@@ -224,11 +224,6 @@ int check_truss(const PerimeterTrussOptions& options) {
 
 }  // namespace
 
-Paraboloid make_paraboloid(const PerimeterTrussOptions& options) {
-  const double clearance = std::isnan(options.clearance) ? -options.aperture / 2 : options.clearance;
-  return {options.aperture, options.focal_length, clearance};
-}
-
 model::Model make_perimeter_truss(const PerimeterTrussOptions& options) {
   const int struts = check_truss(options);
   return Builder(options, struts).build();

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
+#include <tautline/core/expression.hpp>
 
 namespace tautline::rod {
 
@@ -95,6 +97,17 @@ Meridian Meridian::parabola(double coefficient) {
   });
 }
 
+Meridian Meridian::expression(const std::string& text) {
+  try {
+    return Meridian([f = Expression(text)](double x) {
+      const Jet2 y = f(x);
+      return Jet{y.value, y.first, y.second};
+    });
+  } catch (const std::invalid_argument& error) {
+    throw ModelError(fmt::format("the meridian \"{}\" is no formula: {}", text, error.what()));
+  }
+}
+
 Meridian Meridian::table(std::vector<double> x, std::vector<double> y) {
   if (x.size() < 2 || x.size() != y.size())
     throw ModelError(fmt::format("the meridian's table has {} x and {} y; it needs two or more points",
@@ -109,7 +122,9 @@ Meridian Meridian::table(std::vector<double> x, std::vector<double> y) {
 }
 
 Meridian Meridian::make(const MeridianOptions& options) {
-  return options.kind == MeridianKind::table ? table(options.x, options.y) : parabola(options.coefficient);
+  if (options.kind == MeridianKind::table) return table(options.x, options.y);
+  if (options.kind == MeridianKind::expression) return expression(options.expression);
+  return parabola(options.coefficient);
 }
 
 double Meridian::angle(double x) const {
@@ -138,7 +153,7 @@ double Meridian::advance(double x1, double length) const {
   return x;
 }
 
-double Meridian::distance(double x, double y) const {
+double Meridian::foot(double x, double y) const {
   double foot = x;
   for (int i = 0; i < 50; ++i) {
     const Jet f = at(foot);
@@ -148,8 +163,13 @@ double Meridian::distance(double x, double y) const {
     foot += step;
     if (std::abs(step) <= 1e-14 * (1 + std::abs(foot))) break;
   }
-  const Jet f = at(foot);
-  return std::copysign(std::hypot(x - foot, y - f.value), y - at(x).value);
+  return foot;
+}
+
+double Meridian::distance(double x, double y) const {
+  const double at_foot = foot(x, y);
+  const Jet f = at(at_foot);
+  return std::copysign(std::hypot(x - at_foot, y - f.value), y - at(x).value);
 }
 
 }  // namespace tautline::rod

@@ -34,13 +34,14 @@ struct Reaction {
     force_size += f.norm();
     moment_size += m.norm() + lever.norm() * f.norm();
   }
-  /// Rounding of the larger reactions elsewhere is nothing of its own.
-  Json json(double largest_force, double largest_moment) const {
-    const auto shown = [](const Vec3& v, double size, double largest) {
-      return size > 1e-12 * largest ? vector_on_grid(v, size) : triple(Vec3::Zero());
+  /// Rounding of the larger reactions elsewhere, or of the stiffest elements, is nothing of its own.
+  Json json(double largest_force, double largest_moment, double rounding, double reach) const {
+    const auto shown = [](const Vec3& v, double size, double largest, double noise) {
+      const bool real = size > 1e-12 * largest && v.norm() > noise;
+      return real ? vector_on_grid(v, size) : triple(Vec3::Zero());
     };
-    return {{"force", shown(force, force_size, largest_force)},
-            {"moment", shown(moment, moment_size, largest_moment)}};
+    return {{"force", shown(force, force_size, largest_force, rounding)},
+            {"moment", shown(moment, moment_size, largest_moment, rounding * reach)}};
   }
 };
 
@@ -137,7 +138,8 @@ Json reactions_json(const assembly::System& system, const assembly::Boundary& bo
   }
   Json result = Json::object();
   for (const auto& [name, sum] : list)
-    result[name] = sum.json(force, std::max(moment, force * system.size()));
+    result[name] = sum.json(force, std::max(moment, force * system.size()), system.rounding_force_of_lines(),
+                            system.size());
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include <tautline/mesh/imported_mesh.hpp>
 #include <tautline/model/section.hpp>
 #include <tautline/reflector/perimeter_truss.hpp>
+#include <tautline/reflector/umbrella.hpp>
 
 #include "steps/context.hpp"
 
@@ -162,7 +163,7 @@ void check_sections(const model::Model& model, const deck::Deck& deck) {
       throw ModelError(fmt::format("group \"{}\": section \"{}\" is for another kind of element", group.name,
                                    found->second.section));
   }
-  if (deck.truss()) return;  // a part of a reflector may be switched off while the deck still describes it
+  if (deck.dish()) return;  // a part of a reflector may be switched off while the deck still describes it
   for (const auto& [name, options] : deck.groups) {
     const int group = model.find_group(name);
     const auto in = [&](const auto& elements) {
@@ -228,6 +229,15 @@ void detach_beams(model::Model& model, const deck::Deck& deck) {
       if (!offset[end].isZero(0) || release[end].any())
         detach_end(model, beam, end, offset[end], release[end]);
   }
+}
+
+/// Every element of the structure is its own parent.
+void number_elements(model::Model& model) {
+  model::for_each_kind(model, [](auto& elements) {
+    int number = 0;
+    for (auto& element : elements)
+      if constexpr (requires { element.parent; }) element.parent = number++;
+  });
 }
 
 /// Finds for every node of `to` the one of `from` that the turn brings there.
@@ -314,6 +324,8 @@ model::Model build_structure(const deck::Deck& deck) {
   model::Model model;
   if (deck.truss()) {
     model = reflector::make_perimeter_truss(*deck.truss());
+  } else if (deck.umbrella()) {
+    model = reflector::make_umbrella(*deck.umbrella());
   } else {
     declare_groups(model, deck);
     add_inline(model, *deck.model, deck);
@@ -322,6 +334,7 @@ model::Model build_structure(const deck::Deck& deck) {
   check_sections(model, deck);
   give_sections(model, deck);
   find_frames(model);
+  number_elements(model);
   if (deck.model) {
     detach_beams(model, deck);
     for (const auto& cyclic : deck.model->cyclic) add_cyclic(model, cyclic);
@@ -329,8 +342,12 @@ model::Model build_structure(const deck::Deck& deck) {
   for (const auto& support : deck.supports)
     model.supports.push_back(
         {support.name, support.on, look_up(model, support.on, support.where), support.fixed, support.axes});
-  for (const auto& options : deck.loads) model.loads.push_back(make_load(model, options));
+  add_loads(model, deck);
   return model;
+}
+
+void add_loads(model::Model& model, const deck::Deck& deck) {
+  for (const auto& options : deck.loads) model.loads.push_back(make_load(model, options));
 }
 
 }  // namespace tautline::steps

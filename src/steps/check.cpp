@@ -50,6 +50,7 @@ void foretell_mechanisms(Context& context) {
       if (entry["status"] != "done")
         throw ModelError(fmt::format("step \"{}\": {}", step.name, entry["reason"].get<std::string>()));
     }
+    if (const auto* rods = std::get_if<RodShapingOptions>(&step.options)) run_step(context, *rods);
     if (const auto* mesh = std::get_if<MeshOptions>(&step.options)) run_step(context, *mesh);
     const auto* equilibrium = std::get_if<EquilibriumOptions>(&step.options);
     if (equilibrium == nullptr) continue;

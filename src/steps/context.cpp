@@ -8,37 +8,69 @@
 #include <tautline/core/stopwatch.hpp>
 #include <tautline/la/session.hpp>
 #include <tautline/output/results.hpp>
-#include <tautline/reflector/perimeter_truss.hpp>
 
 #include "steps/summaries.hpp"
 
 namespace tautline::steps {
 
+namespace {
+
+/// Every element is its own parent: the mesh is the structure.
+void number_elements(model::Model& mesh) {
+  const auto number = [](auto& elements) {
+    for (std::size_t i = 0; i < elements.size(); ++i) elements[i].parent = static_cast<int>(i);
+  };
+  number(mesh.cables);
+  number(mesh.beams);
+  number(mesh.membranes);
+  number(mesh.shells);
+}
+
+}  // namespace
+
 Context::Context(const deck::Deck& the_deck, std::string directory, bool pictures, Progress& the_progress)
     : deck(the_deck),
       progress(the_progress),
+      checkpoints(the_deck, directory + "/checkpoints"),
       directory_(std::move(directory)),
       pictures_(pictures),
       root_(la::rank() == 0),
       fields_(directory_, la::rank(), la::size()) {
   if (deck.rod_umbrella() != nullptr) {
     umbrella = rod::make_umbrella(*deck.rod_umbrella());
+    why_none_ = "the rod-umbrella has no cables yet: a rod_shaping step finds them";
     return;
   }
   structure = build_structure(deck);
   model::validate(structure);
   model::find_directors(structure);
-  if (deck.truss()) surface = reflector::make_paraboloid(*deck.truss());
+  if (deck.dish()) surface = reflector::make_paraboloid(*deck.dish());
 }
 
 assembly::System& Context::system() {
-  if (!system_) set_system(structure);
+  if (!system_) {
+    model::Model mesh = described();
+    number_elements(mesh);
+    set_system(std::move(mesh));
+  }
   return *system_;
 }
 
 analysis::Workspace& Context::workspace() {
   system();
   return *workspace_;
+}
+
+const model::Model& Context::described() const {
+  if (structure.nodes.empty()) throw ModelError(why_none_);
+  return structure;
+}
+
+void Context::set_structure(model::Model the_structure, std::string why_none) {
+  structure = std::move(the_structure);
+  why_none_ = std::move(why_none);
+  workspace_.reset();
+  system_.reset();
 }
 
 void Context::set_system(model::Model mesh) {
@@ -48,7 +80,7 @@ void Context::set_system(model::Model mesh) {
 }
 
 void Context::note_model() {
-  if (umbrella) {
+  if (umbrella && !has_system()) {
     results["model"] = umbrella_json(*umbrella);
     return;
   }
@@ -114,15 +146,32 @@ assembly::Boundary Context::boundary(const std::vector<std::string>& hold, bool 
   return boundary;
 }
 
-analysis::PathSummary follow(Context& context, const std::string& what, int increments,
-                             const std::function<void(double)>& converged) {
-  const auto tell = [&](double lambda, int iteration, double residual) {
+namespace {
+
+/// Iterations on the live line.
+std::function<void(double, int, double)> teller(Context& context, const std::string& what) {
+  return [&context, what](double lambda, int iteration, double residual) {
     context.progress.update(fmt::format("{} | {}: lambda {:.4g}, iteration {}, residual {:.1e}",
                                         context.step_name, what, lambda, iteration, residual));
   };
+}
+
+}  // namespace
+
+analysis::PathSummary follow(Context& context, const std::string& what, int increments,
+                             const std::function<void(const analysis::PathPoint&)>& converged, double start) {
   auto options = context.deck.solver;
   options.increments = increments;
-  return analysis::follow_path(context.system(), context.workspace(), options, {tell, converged});
+  return analysis::follow_path(context.system(), context.workspace(), options,
+                               {teller(context, what), converged}, start);
+}
+
+analysis::PathSummary follow_arc(Context& context, const std::string& what,
+                                 const analysis::ArcLengthOptions& options,
+                                 const std::optional<analysis::Watch>& watch,
+                                 const std::function<void(const analysis::PathPoint&)>& converged) {
+  return analysis::follow_arc(context.system(), context.workspace(), context.deck.solver, options, watch,
+                              {teller(context, what), converged});
 }
 
 }  // namespace tautline::steps

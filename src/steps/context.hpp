@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <tautline/analysis/arc_length.hpp>
 #include <tautline/assembly/system.hpp>
 #include <tautline/core/progress.hpp>
 #include <tautline/deck/deck.hpp>
@@ -20,9 +21,9 @@
 #include <tautline/reflector/surface_error.hpp>
 #include <tautline/rod/umbrella.hpp>
 
-namespace tautline::steps {
+#include "steps/checkpoint.hpp"
 
-using Json = nlohmann::ordered_json;
+namespace tautline::steps {
 
 class Context {
  public:
@@ -30,12 +31,15 @@ class Context {
 
   const deck::Deck& deck;
   Progress& progress;
-  model::Model structure;  ///< as described; after form-finding, as found; empty for an umbrella
+  model::Model structure;  ///< as described; after form-finding, as found; of an umbrella, by rod_shaping
   std::optional<reflector::Paraboloid> surface;  ///< of a reflector
   std::optional<rod::Umbrella> umbrella;         ///< of a rod-umbrella
+  std::vector<output::Curve> rod_shapes;         ///< of the rod_shaping steps so far, for pictures
   std::string step_name;                         ///< of the step in hand
   std::vector<std::string> acting_loads;         ///< by name, since the last equilibrium
   Json results;                                  ///< the whole results.json
+  Checkpoints checkpoints;                       ///< written as the run goes
+  std::optional<StagePoint> resume;              ///< where the step in hand goes on, if it was begun before
 
   /// Time spent on pictures and files so far [s].
   double output_seconds() const { return output_seconds_; }
@@ -47,6 +51,10 @@ class Context {
   analysis::Workspace& workspace();
   bool has_system() const { return system_ != nullptr; }
   void set_system(model::Model mesh);
+  /// Another structure, or none and why; what was made of the one before is forgotten.
+  void set_structure(model::Model structure, std::string why_none = {});
+  /// The structure. @throws ModelError if there is none
+  const model::Model& described() const;
 
   /// Writes the present model's numbers into results.
   void note_model();
@@ -68,7 +76,7 @@ class Context {
   template <class Picture>
   void draw_any(const std::string& name, const std::string& caption, const Picture& picture);
 
-  std::string directory_;
+  std::string directory_, why_none_;
   bool pictures_, root_;
   double output_seconds_ = 0;
   std::unique_ptr<assembly::System> system_;
@@ -79,6 +87,8 @@ class Context {
 /// The structure of a deck: reflector or model, with sections, initial states, supports and loads. @throws
 /// ModelError
 model::Model build_structure(const deck::Deck& deck);
+/// The loads of the deck, on groups of the model. @throws ModelError
+void add_loads(model::Model& model, const deck::Deck& deck);
 
 // One function for each step kind, in the file of that name. Each returns its entry of results.json without
 // name, kind and times; `status` is "done" or "not_converged".
@@ -87,11 +97,22 @@ Json run_step(Context& context, const MeshOptions& options);
 Json run_step(Context& context, const EquilibriumOptions& options);
 Json run_step(Context& context, const TuningStepOptions& options);
 Json run_step(Context& context, const ModalOptions& options);
+Json run_step(Context& context, const BucklingOptions& options);
+Json run_step(Context& context, const CollapseOptions& options);
 Json run_step(Context& context, const RodShapingOptions& options);
+Json run_step(Context& context, const InverseOptions& options);
 
 /// Follows the path of a stage that was begun, with progress on the live line; stops at lambda = k /
-/// increments at least and calls `converged(lambda)` wherever it comes to rest.
+/// increments at least and calls `converged(point)` wherever it comes to rest. `start`: lambda where it
+/// stands.
 analysis::PathSummary follow(Context& context, const std::string& what, int increments = 1,
-                             const std::function<void(double)>& converged = {});
+                             const std::function<void(const analysis::PathPoint&)>& converged = {},
+                             double start = 0);
+
+/// Follows such a stage by the length of its path.
+analysis::PathSummary follow_arc(Context& context, const std::string& what,
+                                 const analysis::ArcLengthOptions& options,
+                                 const std::optional<analysis::Watch>& watch = {},
+                                 const std::function<void(const analysis::PathPoint&)>& converged = {});
 
 }  // namespace tautline::steps

@@ -1,113 +1,98 @@
-#include <optional>
+#include <algorithm>
 
 #include <fmt/format.h>
 
-#include <tautline/assembly/mechanism.hpp>
-#include <tautline/core/error.hpp>
-#include <tautline/core/stopwatch.hpp>
 #include <tautline/model/response.hpp>
 
 #include "steps/balance.hpp"
 #include "steps/context.hpp"
+#include "steps/path_results.hpp"
+#include "steps/release.hpp"
+#include "steps/rod_structure.hpp"
+#include "steps/stage.hpp"
 #include "steps/summaries.hpp"
 
 namespace tautline::steps {
 
 namespace {
 
-std::vector<StageOptions> stages_of(const EquilibriumOptions& options) {
-  if (options.stages.empty()) return {{"supports only", {}, {}}};
-  return options.stages;
-}
+/// A stage and the loads that act at its end.
+struct Part {
+  StageOptions stage;
+  std::vector<std::string> loads;
+};
 
-std::vector<std::string> names_of(const std::vector<model::LoadOptions>& loads) {
+std::vector<std::string> names_of(const std::vector<model::Load>& loads) {
   std::vector<std::string> names;
   for (const auto& load : loads) names.push_back(load.name);
   return names;
 }
 
-Json newton_table(const analysis::PathSummary& path) {
-  Json table = Json::array();
-  for (const auto& point : path.points) {
-    Json rows = Json::array();
-    for (const auto& iteration : point.newton.iterations)
-      rows.push_back(Json::array(
-          {rounded(above_rounding(iteration.norms.force, 1e-10 * iteration.norms.reference_force)),
-           rounded(above_rounding(iteration.increment, 1e-12))}));
-    table.push_back({{"lambda", point.lambda}, {"force_and_increment", rows}});
+/// The stages in order. Loads come in the last one; before a path that is followed by its length what is
+/// released comes to rest under the loads that act already.
+std::vector<Part> parts_of(const EquilibriumOptions& options, const std::vector<std::string>& acting,
+                           const std::vector<std::string>& wanted) {
+  std::vector<Part> parts;
+  for (const auto& stage : options.stages) parts.push_back({stage, {}});
+  if (parts.empty()) parts.push_back({{"supports only", {}, {}}, {}});
+  parts.back().loads = wanted;
+  if (options.control == Control::arc_length) {
+    Part rest = parts.back();
+    rest.stage.name += ", at rest";
+    rest.loads = acting;
+    parts.insert(parts.end() - 1, rest);
   }
-  return table;
+  return parts;
 }
 
-/// One stage: returns its entry; `reached` says whether lambda came to 1.
-Json run_stage(Context& context, const StageOptions& stage, const assembly::Boundary& boundary,
-               const EquilibriumOptions& options, bool is_last, Json& way, bool& reached) {
-  auto& system = context.system();
-  double seconds = 0;
-  auto watch = std::make_optional<Stopwatch>(seconds);
-  const auto start = system.begin_stage(boundary);
-  context.progress.say(fmt::format("{} | {}: out-of-balance at the start {:.3e} N", context.step_name,
-                                   stage.name, start.force));
-  const auto path = follow(context, stage.name, is_last ? options.increments : 1, [&](double lambda) {
-    if (!is_last || (options.monitor.empty() && options.increments == 1)) return;
-    way.push_back({{"lambda", lambda},
-                   {"monitors", monitors_json(system, options.monitor)},
-                   {"reactions", reactions_json(system, boundary, system.reactions())}});
-  });
-  watch.reset();
-  reached = path.reached;
-  if ((!path.reached && path.points.empty()) || path.inertia.null > 0)
-    if (const auto mechanism = assembly::find_mechanism(system, context.workspace()))
-      throw ModelError(fmt::format("stage \"{}\": {}", stage.name, mechanism->text));
-  return {{"name", stage.name},
-          {"status", path.reached ? "done" : "not_converged"},
-          {"reason", path.reason},
-          {"newton_iterations", path.newton_iterations},
-          {"lambda_steps", path.points.size()},
-          {"failed_attempts", path.failed_attempts},
-          {"lambda", path.lambda()},
-          {"negative_pivots", path.inertia.negative},
-          {"null_pivots", path.inertia.null},
-          {"step0_out_of_balance", above_rounding(start.force, 1e-12)},
-          {"step0_out_of_balance_moment", above_rounding(start.moment, 1e-12)},
-          {"newton", newton_table(path)},
-          {"wall_seconds", seconds}};
+void follow_parts(Context& context, const EquilibriumOptions& options, StageRunner& runner, Json& entry) {
+  const auto acting = options.reset ? std::vector<std::string>{} : context.acting_loads;
+  const auto wanted = options.loads ? *options.loads : names_of(context.system().model().loads);
+  auto parts = parts_of(options, acting, wanted);
+  if (options.release == Release::automatic) {
+    const auto release = find_release(context, wanted);
+    entry["release_attempts"] = release.attempts;
+    entry["release_schedule"] = release.schedule;
+    context.progress.say(fmt::format("{} | release: {}", context.step_name, release.summary));
+    parts.clear();
+    for (const auto& stage : release.stages) parts.push_back({stage, {}});
+    parts.back().loads = wanted;
+  }
+  for (std::size_t i = static_cast<std::size_t>(runner.first()); i < parts.size(); ++i) {
+    if (runner.run(parts[i].stage, parts[i].loads, i + 1 == parts.size())) continue;
+    entry["status"] = "not_converged";
+    entry["reason"] = fmt::format(
+        "stage \"{}\" {}. Try a stage in between that holds more (or release: automatic), a smaller "
+        "solver.min_step, control: arc_length if loads have passed a limit, or check the structure for a "
+        "mechanism (tautline check). See docs/when_it_does_not_converge.md",
+        parts[i].stage.name, runner.entries().back()["reason"].get<std::string>());
+    break;
+  }
+  context.acting_loads = wanted;
 }
 
 }  // namespace
 
 Json run_step(Context& context, const EquilibriumOptions& options) {
   auto& system = context.system();
-  if (options.reset) system.reset();
+  if (options.reset && !context.resume) system.reset();
   Json entry;
   entry["status"] = "done";
-  entry["stages"] = Json::array();
-  const auto stages = stages_of(options);
-  Json way = Json::array();
-  assembly::Boundary boundary;
-  context.acting_loads = options.loads ? *options.loads : names_of(context.deck.loads);
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    bool reached = true;
-    const bool is_last = i + 1 == stages.size();
-    boundary = context.boundary(stages[i].hold, is_last);
-    entry["stages"].push_back(run_stage(context, stages[i], boundary, options, is_last, way, reached));
-    if (reached) continue;
-    entry["status"] = "not_converged";
-    entry["reason"] = fmt::format(
-        "stage \"{}\" {}. Try a stage in between that holds more, a smaller solver.min_step, or check the "
-        "structure for a mechanism (tautline check)",
-        stages[i].name, entry["stages"].back()["reason"].get<std::string>());
-    break;
-  }
+  StageRunner runner(context, options);
+  follow_parts(context, options, runner, entry);
+  entry["stages"] = runner.entries();
   const auto response = model::evaluate_response(system.model(), system.state());
   const auto reactions = system.reactions();
-  entry["reactions"] = reactions_json(system, boundary, reactions);
+  entry["reactions"] = reactions_json(system, runner.boundary(), reactions);
   if (const Json sums = balance_json(system, reactions); !sums.is_null()) entry["balance"] = sums;
-  if (!way.empty()) entry["path"] = way;
-  entry["groups"] = groups_json(model::summarise_groups(system.model(), response));
+  if (!runner.way().empty()) entry["path"] = runner.way();
+  entry["critical_points"] = runner.critical();
+  entry["groups"] = groups_json(model::summarise_groups(system.model(), response), system.rounding_force());
   if (context.surface) entry["surface"] = surface_json(measure(context));
+  if (context.umbrella) entry["rods"] = rods_json(context, response);
   context.write_fields(context.step_name, field_grid(context, response));
   draw_state(context, response);
+  draw_path(context, runner.way(), runner.critical());
   return entry;
 }
 

@@ -1,253 +1,241 @@
-#include <tautline/formfinding/force_density.hpp>
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
+#include <tautline/element/membrane.hpp>
 #include <tautline/model/response.hpp>
 #include <tautline/model/section.hpp>
 
 #include "steps/context.hpp"
+#include "steps/form_methods.hpp"
+#include "steps/frame_balance.hpp"
+#include "steps/length_errors.hpp"
+#include "steps/reflector_form.hpp"
 #include "steps/summaries.hpp"
 
 namespace tautline::steps {
 
 namespace {
 
-/// The net as stage 1 sees it, and the way back to the structure.
-struct Extract {
-  formfinding::Net net;
-  std::vector<int> cables;  ///< structure cable of each branch
-  std::vector<int> nodes;   ///< structure node of each net node
-};
-
-std::vector<std::string> net_groups(const Context& context, const FormFindingOptions& options) {
-  if (!options.net.empty()) return options.net;
-  if (context.surface) return {"front_net"};
-  std::vector<std::string> names;
-  for (const auto& group : context.structure.groups)
-    if (group.kind == model::ElementKind::cable) names.push_back(group.name);
-  return names;
-}
-
-/// Nodes of the net that stay: those supported, named by `fixed`, or attached to beams.
-std::vector<bool> fixed_nodes(const model::Model& structure, const FormFindingOptions& options) {
-  std::vector<bool> fixed = structure.rotational_nodes();
-  for (const auto& support : structure.supports)
-    if (support.fixed[0] && support.fixed[1] && support.fixed[2])
-      for (const int node : support.nodes) fixed[node] = true;
-  for (const int node : structure.nodes_of(options.fixed)) fixed[node] = true;
-  return fixed;
-}
-
-Extract extract_net(const model::Model& structure, const std::vector<std::string>& groups,
-                    const FormFindingOptions& options) {
-  Extract extract;
-  for (const auto& name : groups) {
-    const auto cables = structure.select(name).cables;
-    extract.cables.insert(extract.cables.end(), cables.begin(), cables.end());
-  }
-  extract.nodes = structure.nodes_of(groups);
-  const auto fixed = fixed_nodes(structure, options);
-  std::vector<int> local(structure.nodes.size(), -1);
-  for (std::size_t i = 0; i < extract.nodes.size(); ++i) {
-    local[extract.nodes[i]] = static_cast<int>(i);
-    extract.net.nodes.push_back(structure.nodes[extract.nodes[i]]);
-    extract.net.fixed.push_back(fixed[extract.nodes[i]]);
-  }
-  for (const int cable : extract.cables) {
-    const auto& nodes = structure.cables[cable].nodes;
-    extract.net.branches.push_back({local[nodes[0]], local[nodes[1]]});
-  }
-  return extract;
-}
-
-VecX targets(const model::Model& structure, const Extract& extract) {
-  VecX target(extract.cables.size());
-  for (std::size_t i = 0; i < extract.cables.size(); ++i) {
-    const double tension = structure.groups[structure.cables[extract.cables[i]].group].target_tension;
-    target[static_cast<int>(i)] = tension > 0 ? tension : std::nan("");
-  }
-  return target;
-}
-
-double stiffness(const model::Model& structure, const model::Cable& cable) {
-  return structure.groups[cable.group].cable.axial_stiffness;
-}
-
-void take_positions_and_tensions(model::Model& structure, const Extract& extract,
-                                 const formfinding::ForceDensityResult& found) {
-  for (std::size_t i = 0; i < extract.nodes.size(); ++i) structure.nodes[extract.nodes[i]] = found.nodes[i];
-  for (std::size_t i = 0; i < extract.cables.size(); ++i) {
-    auto& cable = structure.cables[extract.cables[i]];
-    cable.initial_strain = found.tension[static_cast<int>(i)] / stiffness(structure, cable);
+void take_cables(model::Model& structure, const FormNet& net, const Form& found) {
+  for (std::size_t i = 0; i < net.nodes.size(); ++i) structure.nodes[net.nodes[i]] = found.nodes[i];
+  for (std::size_t b = 0; b < net.cables.size(); ++b) {
+    auto& cable = structure.cables[net.cables[b]];
+    const auto i = static_cast<Eigen::Index>(b);
+    cable.initial_strain = found.unstressed_length.size() > 0
+                               ? structure.reference_length(cable) / found.unstressed_length[i] - 1
+                               : found.tension[i] / net.stiffness(structure, b);
   }
 }
 
-/// The rear net is the front net's mirror image with the same tensions; each tie carries what its front node
-/// needs along z.
-void complete_reflector(Context& context, const Extract& extract,
-                        const formfinding::ForceDensityResult& found) {
-  auto& structure = context.structure;
-  const double gap = context.deck.truss()->gap;
-  std::vector<double> pull(structure.nodes.size(), 0.0);
-  for (std::size_t i = 0; i < extract.nodes.size(); ++i)
-    pull[extract.nodes[i]] = -found.residual_z[static_cast<int>(i)];
-  std::vector<int> mirror(structure.nodes.size(), -1);
-  for (const int i : structure.select("ties").cables) {
-    auto& tie = structure.cables[i];
-    const auto [front, rear] = tie.nodes;
-    mirror[front] = rear;
-    const Vec3& at = structure.nodes[front];
-    structure.nodes[rear] = Vec3(at.x(), at.y(), -at.z() - gap);
-    tie.initial_strain = pull[front] / stiffness(structure, tie);
-    if (pull[front] <= 0)
-      throw ModelError(
-          fmt::format("form-finding: the tie at ({:.3f}, {:.3f}) would be pressed with {:.3g} N; a tie only "
-                      "pulls. The net "
-                      "does not hang below its rim there: check rim_height and the net's tensions",
-                      at.x(), at.y(), -pull[front]));
+/// Stress of triangles from the force densities of their sides: A N = sum of q l l^T.
+void take_film(model::Model& structure, const FormNet& net, const Form& found) {
+  for (std::size_t t = 0; t < found.film_sides.size(); ++t) {
+    auto& membrane = structure.membranes[net.membranes[t]];
+    if (membrane.nodes.size() != 3) continue;  // of two triangles: keeps the stress it was given
+    Mat<3, 3> x;
+    for (int k = 0; k < 3; ++k) x.col(k) = found.nodes[net.triangles[t][k]];
+    const Mat<3, 2> axes = element::membrane_frame<3>(x).leftCols<2>();
+    const double area = 0.5 * (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).norm();
+    Mat<2> stress = Mat<2>::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const Vec<2> side = axes.transpose() * (x.col((k + 2) % 3) - x.col((k + 1) % 3));
+      stress += found.film_sides[t][k] / area * side * side.transpose();
+    }
+    membrane.prestress = Vec3(stress(0, 0), stress(1, 1), stress(0, 1));
   }
-  const auto rear_net = structure.select("rear_net").cables;
-  if (rear_net.size() != extract.cables.size())
-    throw ModelError("form-finding: the rear net is not the front net's mirror image");
-  for (std::size_t i = 0; i < rear_net.size(); ++i)
-    structure.cables[rear_net[i]].initial_strain = structure.cables[extract.cables[i]].initial_strain *
-                                                   stiffness(structure, structure.cables[extract.cables[i]]) /
-                                                   stiffness(structure, structure.cables[rear_net[i]]);
 }
 
-/// Other cables keep what the deck states, now on the found lengths.
-void refresh_other_groups(Context& context, const std::vector<std::string>& found_groups) {
+/// Cables of `ties` pull along z at the nodes of the net that lie on a surface.
+void take_ties(model::Model& structure, const FormNet& net, const Form& found,
+               const std::vector<std::string>& groups) {
+  for (const auto& name : groups)
+    for (const int i : structure.select(name).cables) {
+      auto& tie = structure.cables[i];
+      const int end = net.local[tie.nodes[0]] >= 0 ? 0 : 1;
+      const int node = net.local[tie.nodes[end]];
+      if (node < 0)
+        throw ModelError(fmt::format("form-finding: a tie of \"{}\" does not meet the net", name));
+      const Vec3 along = structure.nodes[tie.nodes[1 - end]] - structure.nodes[tie.nodes[end]];
+      if (along.head<2>().norm() > 1e-3 * along.norm())
+        structure.nodes[tie.nodes[1 - end]].head<2>() = structure.nodes[tie.nodes[end]].head<2>();
+      const double tension = found.reaction[node].z() * (along.z() > 0 ? 1 : -1);
+      if (tension < 0)
+        throw ModelError(
+            fmt::format("form-finding: the tie of \"{}\" at ({:.3f}, {:.3f}) would be pressed with "
+                        "{:.3g} N; a tie only pulls: its other end must lie on the other side",
+                        name, found.nodes[node].x(), found.nodes[node].y(), -tension));
+      tie.initial_strain = tension / structure.axial_stiffness(tie);
+    }
+}
+
+/// Other groups keep what the deck states, now on the found lengths.
+void refresh_other_groups(Context& context, const std::vector<std::string>& settled) {
   auto& structure = context.structure;
   for (std::size_t i = 0; i < structure.groups.size(); ++i) {
     const auto& name = structure.groups[i].name;
-    const bool found = std::find(found_groups.begin(), found_groups.end(), name) != found_groups.end();
-    if (!found) model::set_initial_state(structure, static_cast<int>(i), context.deck.groups.at(name));
+    if (std::find(settled.begin(), settled.end(), name) != settled.end()) continue;
+    const auto& options = context.deck.groups.at(name);
+    if (options.initial_stress) continue;  // the same in every shape
+    model::set_initial_state(structure, static_cast<int>(i), options);
   }
 }
 
-/// What the branches pull at each node with, sum of q (x_j - x_i) [N].
-Points nodal_forces(const formfinding::Net& net, const formfinding::ForceDensityResult& found) {
-  Points forces(net.nodes.size(), Vec3::Zero());
-  for (std::size_t i = 0; i < net.branches.size(); ++i) {
-    const auto& [a, b] = net.branches[i];
-    const Vec3 pull = found.force_density[static_cast<int>(i)] * (found.nodes[b] - found.nodes[a]);
-    forces[a] += pull;
-    forces[b] -= pull;
-  }
-  return forces;
-}
-
-formfinding::ForceDensityResult solve_linear(const model::Model& structure, const Extract& extract,
-                                             const formfinding::Surface* surface) {
-  formfinding::ForceDensityResult result;
-  result.force_density.resize(extract.cables.size());
-  for (std::size_t i = 0; i < extract.cables.size(); ++i) {
-    const auto& cable = structure.cables[extract.cables[i]];
-    result.force_density[static_cast<int>(i)] =
-        cable.initial_strain * stiffness(structure, cable) / structure.reference_length(cable);
-  }
-  result.nodes = formfinding::solve_linear(extract.net, result.force_density, surface);
-  result.tension.resize(extract.cables.size());
-  for (std::size_t i = 0; i < extract.cables.size(); ++i) {
-    const auto& [a, b] = extract.net.branches[i];
-    result.tension[static_cast<int>(i)] =
-        result.force_density[static_cast<int>(i)] * (result.nodes[b] - result.nodes[a]).norm();
-  }
-  result.converged = true;
-  result.iterations = 1;
-  result.reason = "one linear solve";
-  result.residual_z = VecX::Zero(static_cast<Eigen::Index>(extract.nodes.size()));
-  const auto forces = nodal_forces(extract.net, result);
-  for (std::size_t i = 0; i < forces.size(); ++i) {
-    result.residual_z[static_cast<int>(i)] = -forces[i].z();
-    if (extract.net.fixed[i]) continue;
-    const double left = surface != nullptr ? forces[i].head<2>().norm() : forces[i].norm();
-    result.out_of_balance = std::max(result.out_of_balance, left);
-  }
-  return result;
-}
-
-Json form_json(const formfinding::ForceDensityResult& found) {
-  Json entry{{"status", found.converged ? "done" : "not_converged"},
-             {"reason", found.reason},
-             {"iterations", found.iterations}};
-  entry["constraint_residual"] = Json::array();
-  for (const double r : found.constraint_residual) entry["constraint_residual"].push_back(r);
-  entry["coordinate_norm"] = Json::array();
-  for (const auto& n : found.coordinate_norm)
-    entry["coordinate_norm"].push_back(Json::array({n.x(), n.y(), n.z()}));
-  entry["step_relaxation"] = found.step_relaxation;
-  entry["out_of_balance"] = found.out_of_balance;
-  if (found.condition_number > 0) entry["condition_number"] = found.condition_number;
-  return entry;
-}
-
-/// Tensions of the structure's cables as found, nothing displaced.
+/// Tensions of the structure's cables and bars as found, nothing displaced.
 Json found_groups_json(const model::Model& structure) {
   auto groups = model::summarise_groups(
-      structure, model::evaluate_response(structure, model::State::reference(structure)));
-  std::erase_if(groups, [](const auto& entry) { return entry.second.kind != model::ElementKind::cable; });
+      structure, model::evaluate_response(structure, model::State::initial(structure)));
+  std::erase_if(groups, [](const auto& entry) {
+    return entry.second.kind != model::ElementKind::cable && entry.second.kind != model::ElementKind::bar;
+  });
   return groups_json(groups);
 }
 
-void draw_convergence(Context& context, const formfinding::ForceDensityResult& found) {
-  if (found.constraint_residual.size() < 2 || !context.draws()) return;
+/// Force of each support on the net.
+Json support_forces(const model::Model& structure, const FormNet& net, const Form& found) {
+  double size = 0;
+  for (const Vec3& force : found.reaction) size = std::max(size, force.norm());
+  Json supports = Json::object();
+  for (const auto& support : structure.supports) {
+    Vec3 sum = Vec3::Zero();
+    bool any = false;
+    for (const int node : support.nodes)
+      if (const int i = net.local[node]; i >= 0) {
+        sum += found.reaction[i];
+        any = true;
+      }
+    if (any)
+      supports[support.name] = {
+          {"force", {on_grid(sum.x(), size), on_grid(sum.y(), size), on_grid(sum.z(), size)}}};
+  }
+  return supports;
+}
+
+/// Largest deviation of a film's stress from the stress asked for, over it.
+double film_unevenness(const model::Model& structure, const FormNet& net) {
+  double largest = 0;
+  for (std::size_t t = 0; t < net.membranes.size(); ++t) {
+    const Vec3& n = structure.membranes[net.membranes[t]].prestress;
+    const double s = net.surface_stress[static_cast<Eigen::Index>(t)];
+    const Mat<2> off = (Mat<2>() << n[0] - s, n[2], n[2], n[1] - s).finished();
+    largest = std::max(largest, off.norm() / s);
+  }
+  return largest;
+}
+
+void draw_convergence(Context& context, const Form& found) {
+  if (found.residual.size() < 2 || !context.draws()) return;
   output::Chart chart;
-  chart.title = "Form-finding: tension residual against iteration";
+  chart.title = "Form-finding: convergence";
   chart.x_label = "iteration";
-  chart.y_label = "largest tension error [N]";
+  chart.y_label = found.residual_name;
   chart.log_y = true;
   output::Curve curve{"residual", {}, {}, true};
-  for (std::size_t i = 0; i < found.constraint_residual.size(); ++i) {
+  for (std::size_t i = 0; i < found.residual.size(); ++i) {
     curve.x.push_back(static_cast<double>(i));
-    curve.y.push_back(std::max(found.constraint_residual[i], 1e-15));
+    curve.y.push_back(std::max(found.residual[i], 1e-15));
   }
   chart.curves = {curve};
-  context.draw("convergence",
-               "Largest deviation of a tension from its target, by iteration of the force density method",
-               chart);
+  context.draw("convergence", found.residual_name + " by iteration of form-finding", chart);
+}
+
+/// Groups whose state follows from what is found.
+std::vector<std::string> settled_groups(const Context& context, const FormFindingOptions& options,
+                                        const FormNet& net) {
+  auto settled = net.groups;
+  settled.insert(settled.end(), net.cloth.begin(), net.cloth.end());
+  settled.insert(settled.end(), options.ties.begin(), options.ties.end());
+  if (context.surface) {
+    const auto completed = completed_groups(net);
+    settled.insert(settled.end(), completed.begin(), completed.end());
+  }
+  return settled;
+}
+
+/// Moves the structure to the shape found and gives all its parts their state.
+void hand_over(Context& context, const FormFindingOptions& options, const FormNet& net, const Form& found) {
+  take_cables(context.structure, net, found);
+  take_film(context.structure, net, found);
+  take_ties(context.structure, net, found, options.ties);
+  if (context.surface) complete_reflector(context, net, found);
+  refresh_other_groups(context, settled_groups(context, options, net));
+}
+
+/// The finite-element system in the state found, for tables, pictures and the step that follows.
+void show(Context& context) {
+  context.set_system(context.structure);
+  auto& system = context.system();
+  system.begin_stage(context.boundary({}, false));
+  if (!context.draws() || system.model().cables.empty()) return;
+  draw_tensions(context, model::evaluate_response(system.model(), system.state()));
+}
+
+constexpr int most_rounds = 30;          // of net and frame in turn
+constexpr double settled_frame = 1e-13;  // change of the frame's displacements over its size
+
+/// Net and frame in turn until neither moves the other: the frame yields, the net is found anew between the
+/// places where it went.
+Form find_with_frame(Context& context, const FormFindingOptions& options, FormNet& net, Json& entry) {
+  const bool precambered = options.frame == FrameKind::precambered;
+  Frame frame(context, net, settled_groups(context, options, net), precambered);
+  double size = 0;
+  for (const Vec3& node : context.structure.nodes)
+    size = std::max(size, (node - context.structure.nodes.front()).norm());
+  Json changes = Json::array();
+  double last = std::numeric_limits<double>::infinity();
+  Form found;
+  for (int round = 0; round < most_rounds; ++round) {
+    context.structure.nodes = frame.positions();
+    for (std::size_t i = 0; i < net.nodes.size(); ++i)
+      if (net.net.fixed[i]) net.net.nodes[i] = context.structure.nodes[net.nodes[i]];
+    if (round == 0 || !precambered) found = find_form(context, options, net);
+    if (!found.converged) return found;
+    hand_over(context, options, net, found);
+    const double change = frame.rest(context, context.structure);
+    changes.push_back(change);
+    context.progress.say(fmt::format("{} | frame yields, change {:.2e} m", context.step_name, change));
+    if (change <= settled_frame * size || (change <= 1e3 * settled_frame * size && change > last / 2)) break;
+    last = change;
+  }
+  if (changes.back().get<double>() > 1e3 * settled_frame * size) {
+    found.converged = false;
+    found.reason = fmt::format("net and frame still move each other by {:.3g} m > {:.3g} m after {} rounds",
+                               changes.back().get<double>(), 1e3 * settled_frame * size, most_rounds);
+  }
+  frame.unload(context.structure);
+  entry["frame"] = {{"rounds", changes.size()},
+                    {"last_change", changes.back()},
+                    {"largest_displacement", frame.largest_displacement()}};
+  return found;
 }
 
 }  // namespace
 
 Json run_step(Context& context, const FormFindingOptions& options) {
-  const auto groups = net_groups(context, options);
-  const auto extract = extract_net(context.structure, groups, options);
-  const formfinding::Surface* surface = context.surface ? &*context.surface : nullptr;
-  formfinding::ForceDensityResult found;
-  double largest_target = 0;
-  if (options.method == FormFindingOptions::Method::linear) {
-    found = solve_linear(context.structure, extract, surface);
-  } else {
-    const VecX target = targets(context.structure, extract);
-    for (const double t : target)
-      if (!std::isnan(t)) largest_target = std::max(largest_target, t);
-    if (largest_target == 0)
-      throw ModelError(
-          fmt::format("form-finding: no group of the net states a tension; give one of {} a `tension`, or "
-                      "use `method: linear`",
-                      fmt::join(groups, ", ")));
-    found = formfinding::find_tensions(
-        extract.net, target, surface, options.solver, [&](int iteration, double residual) {
-          context.progress.update(fmt::format("{} | iteration {}, tension residual {:.2e} N",
-                                              context.step_name, iteration, residual));
-        });
-  }
-  Json entry = form_json(found);
-  if (!found.converged) return entry;
-  take_positions_and_tensions(context.structure, extract, found);
-  auto settled = groups;
-  if (surface != nullptr) {
-    complete_reflector(context, extract, found);
-    settled.insert(settled.end(), {"rear_net", "ties"});
-  }
-  refresh_other_groups(context, settled);
-  entry["groups"] = found_groups_json(context.structure);
+  auto net = extract_net(context, options);
+  Json frame;
+  const auto found = options.frame != FrameKind::rigid ? find_with_frame(context, options, net, frame)
+                                                       : find_form(context, options, net);
+  Json entry{{"status", found.converged ? "done" : "not_converged"}, {"reason", found.reason}};
+  entry.update(found.details);
+  if (!frame.is_null()) entry.update(frame);
+  if (!found.warnings.empty()) entry["warnings"] = found.warnings;
+  for (const auto& warning : found.warnings) context.progress.say("warning: " + warning);
   draw_convergence(context, found);
+  if (!found.converged && !found.details.contains("worst")) return entry;
+  if (!found.converged && context.surface) return entry;
+  if (options.frame == FrameKind::rigid) hand_over(context, options, net, found);
+  entry["groups"] = found_groups_json(context.structure);
+  if (!context.surface)
+    if (const Json supports = support_forces(context.structure, net, found); !supports.empty())
+      entry["reactions"] = supports;
+  if (!found.film_sides.empty()) entry["film_unevenness"] = film_unevenness(context.structure, net);
+  if (found.converged) show(context);
+  if (found.converged && options.length_errors)
+    entry["length_errors"] = length_errors_json(context, *options.length_errors, net);
   return entry;
 }
 

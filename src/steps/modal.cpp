@@ -8,6 +8,7 @@
 #include <tautline/model/response.hpp>
 
 #include "steps/context.hpp"
+#include "steps/mode_shapes.hpp"
 #include "steps/summaries.hpp"
 
 namespace tautline::steps {
@@ -57,57 +58,11 @@ Json effective_masses(const assembly::System& system, const la::SymmetricMatrix&
     Json row = Json::array();
     for (std::size_t k = 0; k < motions.size(); ++k) {
       const double share = std::pow(motions[k].dot(product), 2);
-      row.push_back(share > 1e-5 * whole[k] ? share : 0.0);
+      row.push_back(share > 1e-5 * whole[k] ? on_grid(share, whole[k]) : 0.0);
     }
     table.push_back(row);
   }
   return table;
-}
-
-/// The mode scaled to a tenth of the structure's size, its largest component positive.
-Points display_shape(const assembly::System& system, const la::Vector& mode) {
-  Points shape = system.nodal(mode).displacement;
-  double largest = 0;
-  for (const auto& v : shape) largest = std::max(largest, v.norm());
-  double signed_peak = 0;
-  for (const auto& v : shape)
-    for (int c = 0; c < 3; ++c)
-      if (std::abs(v[c]) > std::abs(signed_peak) * (1 + 1e-6)) signed_peak = v[c];
-  const double scale = (signed_peak < 0 ? -1.0 : 1.0) / largest;
-  for (auto& v : shape) v *= scale;
-  return shape;
-}
-
-void draw_mode(Context& context, const Points& shape, int number, double frequency) {
-  const auto& system = context.system();
-  const auto& model = system.model();
-  Points points = model::positions(model, system.state());
-  Vec3 low = points.front(), high = low;
-  for (const auto& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const double size = 0.05 * (high - low).norm();
-  output::ViewLayer surface, frame, rest;
-  for (std::size_t i = 0; i < points.size(); ++i) surface.point_scalars.push_back(shape[i].norm());
-  rest.points = points;
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] += size * shape[i];
-  surface.points = frame.points = points;
-  add_triangles(model.membranes, surface);
-  add_triangles(model.shells, surface);
-  for (const auto& b : model.beams) frame.lines.push_back(b.nodes);
-  if (surface.triangles.empty())
-    for (const auto& c : model.cables) surface.lines.push_back(c.nodes);
-  rest.lines = frame.lines;
-  rest.line_width = 1;
-  frame.line_width = 2.5;
-  rest.colour = Vec3(0.75, 0.75, 0.78);
-  output::View view;
-  view.title = fmt::format("Mode {}: {:.4g} Hz", number, frequency);
-  view.layers = {std::move(surface), std::move(rest), std::move(frame)};
-  view.scalar_title = "relative amplitude";
-  context.draw(fmt::format("mode_{}", number),
-               fmt::format("Mode {}, {:.4g} Hz; light grey: at rest", number, frequency), view);
 }
 
 }  // namespace
@@ -140,10 +95,11 @@ Json run_step(Context& context, const ModalOptions& options) {
     entry["frequencies"].push_back(frequency);
     entry["residuals"].push_back(above_rounding(pairs.residuals[i], 1e-12));
     const Points shape = display_shape(system, pairs.vectors[i]);
-    output::Field field{fmt::format("mode {} ({:.4g} Hz)", i + 1, frequency), 3, {}};
-    for (const auto& v : shape) field.values.insert(field.values.end(), v.begin(), v.end());
-    grid.point_fields.push_back(std::move(field));
-    if (i < 3 && context.draws()) draw_mode(context, shape, i + 1, frequency);
+    grid.point_fields.push_back(mode_field(fmt::format("mode {} ({:.4g} Hz)", i + 1, frequency), shape));
+    if (i < 3 && context.draws())
+      draw_mode(context, shape, fmt::format("mode_{}", i + 1),
+                fmt::format("Mode {}: {:.4g} Hz", i + 1, frequency),
+                fmt::format("Mode {}, {:.4g} Hz; light grey: at rest", i + 1, frequency));
     if (eigenvalue < -rounding) {
       entry["status"] = "not_converged";
       entry["reason"] =

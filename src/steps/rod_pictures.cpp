@@ -72,6 +72,19 @@ void draw_meridians(Context& context, const rod::RodShape& shape) {
                "Rod before the turn of its root and bent by the cables, beside the meridian wanted", chart);
 }
 
+/// The rods of this and all steps before in one chart.
+void draw_shapes(Context& context, const rod::RodShape& shape) {
+  context.rod_shapes.push_back(Curve{context.step_name, along(shape, [](const auto& p) { return p.x; }),
+                                     along(shape, [](const auto& p) { return p.y; }), false});
+  if (context.rod_shapes.size() < 2) return;
+  output::Chart chart;
+  chart.title = "Bent rods of the steps so far";
+  chart.x_label = "X, from the axis [m]";
+  chart.y_label = "Y, along the axis [m]";
+  chart.curves = context.rod_shapes;
+  context.draw("shapes", "Rods found by this step and those before", chart);
+}
+
 void draw_deviation(Context& context, const rod::RodShape& shape, const rod::RodReport& report) {
   List deviation = deviations(*context.umbrella, shape), at_nodes;
   for (double& value : deviation) value *= 1e3;
@@ -150,6 +163,7 @@ void draw_rod(Context& context, const rod::RodShape& shape, const rod::RodReport
   if (!context.draws()) return;
   draw_umbrella(context, shape);
   draw_meridians(context, shape);
+  draw_shapes(context, shape);
   draw_deviation(context, shape, report);
   draw_moments(context, shape);
 }

@@ -1,3 +1,5 @@
+#include <numbers>
+
 #include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
@@ -7,6 +9,7 @@
 
 #include "steps/context.hpp"
 #include "steps/rod_pictures.hpp"
+#include "steps/rod_structure.hpp"
 
 namespace tautline::steps {
 
@@ -21,15 +24,37 @@ Options with_limits(Options options, const RodShapingOptions& step) {
   return options;
 }
 
+/// A value for each link from one for all, or as many.
+VecX for_links(const rod::Umbrella& umbrella, const std::vector<double>& given) {
+  VecX values(umbrella.rod.links());
+  for (int k = 0; k < values.size(); ++k) values[k] = given.size() == 1 ? given[0] : given.at(k);
+  return values;
+}
+
+/// Angles of the nodes on an arc that begins at the root and turns by the start angle.
+VecX start_angles(const rod::Rod& rod, double start_angle_deg) {
+  VecX angles(rod.links());
+  double s = 0;
+  for (int k = 0; k < angles.size(); ++k) {
+    s += rod.lengths[k] / rod.lengths.sum();
+    angles[k] = rod.root.angle + s * start_angle_deg * std::numbers::pi / 180;
+  }
+  return angles;
+}
+
 rod::RodSolution solve(const rod::Umbrella& umbrella, const RodShapingOptions& options) {
   const auto exact = with_limits(options.exact, options);
   const auto cantilevers = with_limits(options.cantilevers, options);
   const bool is_exact = options.method == Method::exact;
+  if (options.reaction) {
+    const VecX forces = for_links(umbrella, *options.reaction);
+    const VecX start = start_angles(umbrella.rod, options.start_angle);
+    return is_exact ? load_exact(umbrella.rod, forces, start, exact)
+                    : load_cantilevers(umbrella.rod, forces, start, cantilevers);
+  }
   if (!options.stiffness)
     return is_exact ? design_exact(umbrella, exact) : design_cantilevers(umbrella, cantilevers);
-  const auto& given = *options.stiffness;
-  VecX stiffness(umbrella.rod.links());
-  for (int k = 0; k < stiffness.size(); ++k) stiffness[k] = given.size() == 1 ? given[0] : given.at(k);
+  const VecX stiffness = for_links(umbrella, *options.stiffness);
   return is_exact ? turn_exact(umbrella, umbrella.rod.lengths, stiffness, exact)
                   : turn_cantilevers(umbrella, stiffness, cantilevers);
 }
@@ -40,17 +65,17 @@ Json list(const VecX& values) {
 
 /// What the step was told, in the words of the deck.
 void add_method(Json& entry, const RodShapingOptions& options) {
-  entry["sought"] = options.stiffness ? "shape" : "cables";
+  const bool cables = !options.stiffness && !options.reaction;
+  entry["sought"] = cables ? "cables" : "shape";
   if (options.method == Method::exact) {
     entry["rod_model"] = "exact";
-    if (!options.stiffness)
-      entry["form"] = options.exact.form == rod::ExactForm::nodes_on_surface ? "a" : "b";
+    if (cables) entry["form"] = options.exact.form == rod::ExactForm::nodes_on_surface ? "a" : "b";
     return;
   }
   entry["rod_model"] = "cantilevers";
   entry["shortening"] =
       options.cantilevers.shortening == rod::Shortening::consistent ? "consistent" : "as_published";
-  if (!options.stiffness)
+  if (cables)
     entry["solver"] = options.cantilevers.method == rod::CantileverMethod::newton ? "newton" : "successive";
 }
 
@@ -98,6 +123,19 @@ void add_warnings(Context& context, Json& entry, std::vector<std::string> warnin
   context.results["warnings"].push_back(text);
 }
 
+/// Leaves the umbrella as a structure for the steps that follow; or word of why it cannot be built.
+void leave_structure(Context& context, const VecX& lengths, const VecX& stiffness) {
+  model::Model structure;
+  try {
+    structure = make_rod_structure(*context.umbrella, *context.deck.rod_umbrella(), lengths, stiffness);
+  } catch (const ModelError& error) {
+    context.set_structure({}, error.what());
+    return;
+  }
+  add_loads(structure, context.deck);
+  context.set_structure(std::move(structure));
+}
+
 }  // namespace
 
 Json run_step(Context& context, const RodShapingOptions& options) {
@@ -106,6 +144,7 @@ Json run_step(Context& context, const RodShapingOptions& options) {
   Json entry{{"status", found.summary.converged() ? "done" : "not_converged"},
              {"reason", found.summary.reason}};
   if (!found.summary.converged()) {
+    context.set_structure({}, fmt::format("step \"{}\" found no shape of the rods", context.step_name));
     add_method(entry, options);
     add_solve(entry, found.summary);
     return entry;
@@ -117,7 +156,15 @@ Json run_step(Context& context, const RodShapingOptions& options) {
   entry["rod_error_rms_axial"] = report.along.rms_axial;
   entry["unstable_directions"] = found.stability.unstable;
   entry["least_stability"] = found.stability.least;
-  add_warnings(context, entry, report.warnings, found.stability);
+  add_warnings(context, entry, options.reaction ? std::vector<std::string>() : report.warnings,
+               found.stability);
+  if (options.reaction)
+    context.set_structure({},
+                          fmt::format("step \"{}\" has forces, no cables, of which no structure can be built",
+                                      context.step_name));
+  else
+    leave_structure(context, found.shape.rod.lengths,
+                    options.stiffness ? for_links(*context.umbrella, *options.stiffness) : report.stiffness);
   write_rod_tables(context, found.shape, report);
   draw_rod(context, found.shape, report);
   return entry;

@@ -95,9 +95,10 @@ std::string run_and_record(Context& context, const Step& step) {
 }
 
 void write_tables(Context& context, const assembly::System::NodalForces& reactions) {
-  if (!context.deck.output.tables || context.umbrella)
+  if (!context.deck.output.tables || (context.umbrella && !context.has_system()))
     return;  // an umbrella's tables are written by its steps
-  output::write_form_finding_nodes(context.path("form_finding_nodes.csv"), context.structure);
+  if (!context.umbrella)
+    output::write_form_finding_nodes(context.path("form_finding_nodes.csv"), context.structure);
   if (!context.has_system()) return;
   const auto& system = context.system();
   const auto& model = system.model();
@@ -110,6 +111,43 @@ void write_tables(Context& context, const assembly::System::NodalForces& reactio
   output::write_cables(context.path("cables.csv"), system.model(), response);
   output::write_beams(context.path("beams.csv"), system.model(), response);
   output::write_cut_list(context.path("cut_list.csv"), system.model(), response);
+}
+
+/// Whether a step makes what the steps behind it stand on, so that it is done anew when a run is taken up.
+bool builds(const Step& step) {
+  return std::holds_alternative<FormFindingOptions>(step.options) ||
+         std::holds_alternative<MeshOptions>(step.options) ||
+         std::holds_alternative<RodShapingOptions>(step.options);
+}
+
+/// Brings the run to where the checkpoint was written: structure and mesh are made again, all else is read.
+/// @return the number of steps done
+int take_up(Context& context, const Checkpoint& checkpoint, const std::string& from) {
+  context.progress.say(fmt::format(
+      "going on from {}: {} step{} done{}", from, checkpoint.steps_done,
+      checkpoint.steps_done == 1 ? "" : "s",
+      checkpoint.point ? fmt::format(", the next one at lambda = {:.4g}", checkpoint.point->place.lambda)
+                       : ""));
+  for (int k = 0; k < checkpoint.steps_done; ++k) {
+    const Step& step = context.deck.steps[static_cast<std::size_t>(k)];
+    context.step_name = step.name;
+    if (builds(step))
+      std::visit([&](const auto& options) { return run_step(context, options); }, step.options);
+  }
+  context.results["steps"] = checkpoint.results["steps"];
+  context.results["resumed"] = {{"from", from}, {"steps", checkpoint.steps_done}};
+  if (checkpoint.point) context.results["resumed"]["lambda"] = checkpoint.point->place.lambda;
+  context.acting_loads = checkpoint.acting_loads;
+  if (checkpoint.rest) context.system().restore(*checkpoint.rest);
+  context.resume = checkpoint.point;
+  context.checkpoints.begin_at(checkpoint);
+  return checkpoint.steps_done;
+}
+
+void leave_checkpoint(Context& context, int steps_done) {
+  Checkpoint checkpoint{steps_done, {{"steps", context.results["steps"]}}, context.acting_loads, {}, {}};
+  if (context.has_system()) checkpoint.rest = context.system().rest();
+  context.checkpoints.save(checkpoint);
 }
 
 /// Closes the books: tables, results.json, report, and the summary on stdout.
@@ -131,6 +169,7 @@ void finish(Context& context, const RunSettings& settings, Clock::time_point sta
 
 ExitCode run(const deck::Deck& deck, const RunSettings& settings, Progress& progress) {
   const auto start = Clock::now();
+  const auto checkpoint = settings.from.empty() ? std::nullopt : find_checkpoint(deck, settings.from);
   Context context(deck, settings.directory, settings.pictures && deck.output.pictures, progress);
   la::on_root([&] { output::prepare_directory(settings.directory); });
   context.results = start_results(deck);
@@ -138,11 +177,13 @@ ExitCode run(const deck::Deck& deck, const RunSettings& settings, Progress& prog
   ExitCode code = ExitCode::done;
   std::string status = "done";
   try {
-    for (const auto& step : deck.steps) {
+    int done = checkpoint ? take_up(context, *checkpoint, settings.from) : 0;
+    for (; done < static_cast<int>(deck.steps.size()); ++done) {
       if (la::true_on_any_rank(interrupt_requested())) throw Interrupted();
-      status = run_and_record(context, step);
+      status = run_and_record(context, deck.steps[static_cast<std::size_t>(done)]);
       context.save();
       if (status != "done") break;
+      leave_checkpoint(context, done + 1);
     }
     if (status != "done") code = ExitCode::not_converged;
   } catch (const Interrupted& error) {

@@ -122,7 +122,7 @@ ExitCode study(const std::string& deck_path, const std::vector<std::string>& ove
     all.push_back(fmt::format("parameters.subdivisions={}", s));
     const auto deck = deck::read_deck(deck_path, all);
     const std::string directory = fmt::format("{}/s{}", settings.directory, s);
-    code = run(deck, {directory, settings.pictures}, progress);
+    code = run(deck, {directory, settings.pictures, ""}, progress);
     if (code != ExitCode::done) break;
     la::on_root(
         [&] { study["rows"].push_back(row_of(output::read_results(directory + "/results.json"), s)); });

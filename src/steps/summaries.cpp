@@ -23,10 +23,21 @@ double on_grid(double value, double size) {
 }
 
 double rounded(double value) {
-  return std::stod(fmt::format("{:.3g}", value));
+  return to_digits(value, 3);
 }
 
-Json groups_json(const std::map<std::string, model::GroupSummary>& groups) {
+double to_digits(double value, int digits) {
+  return std::stod(fmt::format("{:.{}g}", value, digits));
+}
+
+double without_rounding(double value, double rounding) {
+  constexpr double digits = 1e-6;
+  if (rounding <= digits * std::abs(value)) return value;
+  const double grid = std::pow(10.0, std::ceil(std::log10(rounding)));
+  return grid * std::round(value / grid);
+}
+
+Json groups_json(const std::map<std::string, model::GroupSummary>& groups, double rounding) {
   Json result = Json::object();
   for (const auto& [name, g] : groups) {
     Json entry{{"count", g.count}};
@@ -42,8 +53,8 @@ Json groups_json(const std::map<std::string, model::GroupSummary>& groups) {
         entry["axial_max"] = g.axial_max;
       }
     } else if (g.kind == ElementKind::beam) {
-      entry["axial_min"] = g.axial_min;
-      entry["axial_max"] = g.axial_max;
+      entry["axial_min"] = without_rounding(g.axial_min, rounding);
+      entry["axial_max"] = without_rounding(g.axial_max, rounding);
       entry["moment_max"] = g.moment_max;
     } else if (g.kind == ElementKind::membrane || g.kind == ElementKind::shell) {
       entry["principal_min"] = g.principal_min;
@@ -114,9 +125,9 @@ reflector::SurfaceSample surface_sample(Context& context) {
   for (const int i : cloth.membranes)
     for (const auto& triangle : model.membranes[i].nodes.triangles()) sample.triangles.push_back(triangle);
   sample.net_nodes = model.select("front_net_nodes").nodes;
-  const double radius = context.deck.truss()->evaluation_radius;
+  const double radius = context.deck.dish()->evaluation_radius;
   sample.radius = std::isnan(radius) ? 0 : radius;
-  sample.frequency = context.deck.truss()->frequency;
+  sample.frequency = context.deck.dish()->frequency;
   return sample;
 }
 
@@ -246,10 +257,12 @@ output::FieldGrid field_grid(Context& context, const model::Response& response) 
 
 namespace {
 
-/// Edges of the named group's beams.
-std::vector<std::array<int, 2>> beam_lines(const model::Model& model, const std::string& group) {
+/// What holds the front net: a rim, or else all beams.
+std::vector<std::array<int, 2>> frame_lines(const model::Model& model) {
+  const int rim = model.find_group("front_rim");
   std::vector<std::array<int, 2>> lines;
-  for (const int i : model.select(group).beams) lines.push_back(model.beams[i].nodes);
+  for (const auto& beam : model.beams)
+    if (rim < 0 || beam.group == rim) lines.push_back(beam.nodes);
   return lines;
 }
 
@@ -289,7 +302,7 @@ void draw_deviation(Context& context) {
     cloth.triangles.push_back(triangle);
     for (const int node : triangle) range = std::max(range, std::abs(cloth.point_scalars[node]));
   }
-  rim.lines = beam_lines(context.system().model(), "front_rim");
+  rim.lines = frame_lines(context.system().model());
   rim.line_width = 2.5;
   output::View view;
   view.title = "Deviation of the cloth from the paraboloid";
@@ -311,7 +324,7 @@ void draw_deviation(Context& context) {
 
 /// Cables coloured by tension before a grey frame.
 output::View tension_view(Context& context, const model::Response& response, const std::vector<int>& cables,
-                          std::vector<std::array<int, 2>> frame_lines) {
+                          std::vector<std::array<int, 2>> frame_edges) {
   const auto& model = context.system().model();
   output::ViewLayer layer, frame;
   layer.points = frame.points = model::positions(model, context.system().state());
@@ -324,35 +337,17 @@ output::View tension_view(Context& context, const model::Response& response, con
     largest = std::max(largest, tension);
     sum += tension;
   }
-  frame.lines = std::move(frame_lines);
+  frame.lines = std::move(frame_edges);
   frame.line_width = 2;
   output::View view;
-  view.subtitle = fmt::format("least {:.3g} N, mean {:.4g} N, largest {:.4g} N", least,
-                              sum / static_cast<double>(cables.size()), largest);
+  const auto newtons = [](double value) {
+    return std::abs(value) >= 1e4 ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);
+  };
+  view.subtitle = fmt::format("least {} N, mean {} N, largest {} N", newtons(least),
+                              newtons(sum / static_cast<double>(cables.size())), newtons(largest));
   view.scalar_title = "tension [N]";
   view.layers = {std::move(frame), std::move(layer)};
   return view;
-}
-
-void draw_tensions(Context& context, const model::Response& response) {
-  const auto& model = context.system().model();
-  std::vector<int> all(model.cables.size());
-  std::iota(all.begin(), all.end(), 0);
-  std::vector<std::array<int, 2>> frame;
-  for (const auto& shell : model.shells)
-    for (int k = 0, n = shell.nodes.size(); k < n; ++k)
-      frame.push_back({shell.nodes[k], shell.nodes[(k + 1) % n]});
-  for (const auto& beam : model.beams) frame.push_back(beam.nodes);
-  auto view = tension_view(context, response, all, frame);
-  view.title = "Tensions of all cables";
-  context.draw("tensions", "Tensions of all cables; the frame in grey", view);
-  if (!context.surface) return;
-  view = tension_view(context, response, model.select("front_net").cables, beam_lines(model, "front_rim"));
-  view.title = "Tensions of the front net";
-  view.direction = Vec3(0, 0, 1);
-  view.up = Vec3(0, 1, 0);
-  view.layers.back().line_width = 3;
-  context.draw("net_tensions", "Tensions of the front net, seen along the axis", view);
 }
 
 /// The displaced structure coloured by how far it went, drawn to a visible scale; light grey: before.
@@ -390,7 +385,44 @@ void draw_displacements(Context& context) {
                fmt::format("Displacements, largest {:.4g} mm; light grey: before", 1e3 * most), view);
 }
 
+/// Membranes behind everything else, with the sides of their facets.
+void add_cloth(Context& context, output::View& view) {
+  const auto& model = context.system().model();
+  output::ViewLayer cloth, mesh;
+  cloth.points = mesh.points = model::positions(model, context.system().state());
+  add_triangles(model.membranes, cloth);
+  for (const auto& membrane : model.membranes)
+    for (int k = 0, n = membrane.nodes.size(); k < n; ++k)
+      mesh.lines.push_back({membrane.nodes[k], membrane.nodes[(k + 1) % n]});
+  cloth.colour = Vec3(0.86, 0.87, 0.88);
+  mesh.colour = Vec3(0.68, 0.70, 0.72);
+  mesh.line_width = 1;
+  view.layers.insert(view.layers.begin(), {std::move(cloth), std::move(mesh)});
+}
+
 }  // namespace
+
+void draw_tensions(Context& context, const model::Response& response) {
+  const auto& model = context.system().model();
+  std::vector<int> all(model.cables.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<std::array<int, 2>> frame;
+  for (const auto& shell : model.shells)
+    for (int k = 0, n = shell.nodes.size(); k < n; ++k)
+      frame.push_back({shell.nodes[k], shell.nodes[(k + 1) % n]});
+  for (const auto& beam : model.beams) frame.push_back(beam.nodes);
+  auto view = tension_view(context, response, all, frame);
+  view.title = "Tensions of all cables";
+  if (!context.surface && !model.membranes.empty()) add_cloth(context, view);
+  context.draw("tensions", "Tensions of all cables; the frame in grey", view);
+  if (!context.surface) return;
+  view = tension_view(context, response, model.select("front_net").cables, frame_lines(model));
+  view.title = "Tensions of the front net";
+  view.direction = Vec3(0, 0, 1);
+  view.up = Vec3(0, 1, 0);
+  view.layers.back().line_width = 3;
+  context.draw("net_tensions", "Tensions of the front net, seen along the axis", view);
+}
 
 void draw_state(Context& context, const model::Response& response) {
   if (!context.draws()) return;

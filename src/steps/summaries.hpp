@@ -16,12 +16,18 @@ namespace tautline::steps {
 /// figures do not depend on the number of ranks.
 double above_rounding(double value, double floor);
 
+/// Without the digits that are rounding, where those are more than a few.
+double without_rounding(double value, double rounding);
 /// A figure of which only the size matters, to three digits.
 double rounded(double value);
+/// A figure to `digits` digits: what an iteration or a difference leaves certain.
+double to_digits(double value, int digits);
 /// Value to ten digits of `size`: what lies below is rounding.
 double on_grid(double value, double size);
 
-Json groups_json(const std::map<std::string, model::GroupSummary>& groups);
+/// @param rounding what the rounding of the stiffest elements may leave in an axial force, see
+/// assembly::System::rounding_force [N]
+Json groups_json(const std::map<std::string, model::GroupSummary>& groups, double rounding = 0);
 Json surface_json(const reflector::SurfaceError& error);
 /// Of all rods: one beam for each link, one cable between neighbours at each node.
 Json umbrella_json(const rod::Umbrella& umbrella);
@@ -33,6 +39,9 @@ reflector::SurfaceError measure(Context& context);
 
 /// Displacement, tension, slack flag, beam forces and axes, membrane stresses, surface deviation.
 output::FieldGrid field_grid(Context& context, const model::Response& response);
+
+/// All cables coloured by tension; of a reflector the front net, too.
+void draw_tensions(Context& context, const model::Response& response);
 
 /// Pictures of a state: deviation of the cloth, tensions of the nets.
 void draw_state(Context& context, const model::Response& response);

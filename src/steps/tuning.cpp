@@ -40,8 +40,7 @@ reflector::TieInfluence tie_influence(Context& context, const std::vector<int>& 
   reflector::TieInfluence influence{sample.surface_nodes, all.topRows(n_surface), MatX::Zero(n, n), VecX(n)};
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& cable = model.cables[ties[static_cast<std::size_t>(i)]];
-    const double stiffness = model.groups[cable.group].cable.axial_stiffness,
-                 unstressed = model.unstressed_length(cable);
+    const double stiffness = model.axial_stiffness(cable), unstressed = model.unstressed_length(cable);
     const auto& [a, b] = cable.nodes;
     const double length = length_now(system, cable.nodes);
     const Vec3 direction = (system.model().nodes[b] + system.state().displacement[b] -
@@ -184,7 +183,7 @@ Json run_step(Context& context, const TuningStepOptions& step) {
   entry["iterations"] = passes;
   entry["newton_iterations"] = newton;
   const auto response = model::evaluate_response(system.model(), system.state());
-  entry["groups"] = groups_json(model::summarise_groups(system.model(), response));
+  entry["groups"] = groups_json(model::summarise_groups(system.model(), response), system.rounding_force());
   entry["surface"] = surface_json(error);
   context.write_fields(context.step_name, field_grid(context, response));
   draw_state(context, response);

@@ -52,6 +52,30 @@ class DenseProblem : public PathProblem {
     point = committed;
     restart();
   }
+  struct Place : Kept {
+    VecX point;
+    double lambda = 0;
+  };
+  std::shared_ptr<const Kept> keep() const override {
+    auto place = std::make_shared<Place>();
+    place->point = point;
+    place->lambda = lambda;
+    return place;
+  }
+  void return_to(const Kept& kept) override {
+    point = static_cast<const Place&>(kept).point;
+    lambda = static_cast<const Place&>(kept).lambda;
+    restart();
+  }
+  void load_rate(la::Vector& q) override {
+    const double h = 1e-3;
+    const VecX rate = -(gradient_(point, lambda + h) - gradient_(point, lambda - h)) / (2 * h);
+    q.write(std::span(rate.data() + 3 * layout_.first, static_cast<std::size_t>(3 * layout_.local)));
+  }
+  void weights(double, la::Vector& d) const override {
+    const std::vector<double> ones(static_cast<std::size_t>(3 * layout_.local), 1 / (size * size));
+    d.write(ones);
+  }
 
  private:
   Gradient gradient_;

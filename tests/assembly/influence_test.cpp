@@ -52,5 +52,52 @@ TEST(LengthInfluence, LeavesHeldNodesWhereTheyAre) {
   EXPECT_EQ(length_influence(system, workspace, {0, 1, 2}, {0, 2, 3}).norm(), 0);
 }
 
+/// Motion of node 1 by central differences of the nonlinear solve with quantities of all cables times 1 +- h.
+Vec3 by_differences(const model::Model& model, CableQuantity quantity) {
+  const double h = 1e-5;
+  const auto solved_with = [&](double factor) {
+    System system(model);
+    if (quantity == CableQuantity::axial_stiffness)
+      system.set_stiffness_factors(std::vector<double>(model.cables.size(), factor));
+    auto strains = system.strains();
+    if (quantity == CableQuantity::unstressed_length)
+      for (auto& strain : strains) strain = (1 + strain) / factor - 1;
+    system.set_target_strains(strains);
+    auto boundary = held_ends();
+    boundary.loads = {load(1, Vec3(1, 2, -30)), weight(Vec3(0, 0, -9.81))};
+    solve(system, boundary);
+    return system.state().displacement[1];
+  };
+  return (solved_with(1 + h) - solved_with(1 - h)) / (2 * h);
+}
+
+/// The same by the influence of one parameter that is 1 and multiplies the quantity of all cables.
+Vec3 by_influence(const model::Model& model, CableQuantity quantity) {
+  System system(model);
+  auto boundary = held_ends();
+  boundary.loads = {load(1, Vec3(1, 2, -30)), weight(Vec3(0, 0, -9.81))};
+  solve(system, boundary);
+  analysis::Workspace workspace{system.new_matrix(), la::DirectSolver()};
+  CableParameter all{quantity, {}};
+  for (int i = 0; i < static_cast<int>(model.cables.size()); ++i)
+    all.parts.push_back({i, quantity == CableQuantity::unstressed_length
+                                ? model.unstressed_length(model.cables[i])
+                                : model.axial_stiffness(model.cables[i])});
+  return influence(system, workspace, {all}, {1}).col(0);
+}
+
+TEST(Influence, OfAFactorOnCablesIsTheDerivativeOfTheEquilibrium) {
+  for (const auto kind : {model::ElementKind::cable, model::ElementKind::bar, model::ElementKind::catenary}) {
+    auto model = tied_node();
+    model.groups[0].kind = kind;
+    model.groups[0].cable.mass_per_length = 0.1;
+    for (const auto quantity : {CableQuantity::unstressed_length, CableQuantity::axial_stiffness}) {
+      const Vec3 expected = by_differences(model, quantity);
+      ASSERT_GT(expected.norm(), 1e-3);
+      EXPECT_LT((by_influence(model, quantity) - expected).norm(), 2e-6 * expected.norm());
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tautline::assembly

@@ -55,9 +55,9 @@ TEST(Deck, ReadsTheStepsOfTheMainDeck) {
 TEST(Deck, ReadsEveryOptionOfAReflectorsSteps) {
   const Deck deck = read_good("reflector_all_keys.yaml");
   const auto& net = std::get<steps::FormFindingOptions>(deck.steps[0].options);
-  EXPECT_EQ(net.solver.jacobian, formfinding::SurfaceJacobian::as_published);
-  EXPECT_EQ(net.solver.max_iterations, 30);
-  EXPECT_TRUE(net.solver.estimate_condition);
+  EXPECT_EQ(net.jacobian, formfinding::SurfaceJacobian::as_published);
+  EXPECT_EQ(net.max_iterations, 30);
+  EXPECT_TRUE(net.condition_number);
   const auto& mesh = std::get<steps::MeshOptions>(deck.steps[1].options).subdivide;
   EXPECT_EQ(mesh.pattern, model::FacetPattern::mapped);
   EXPECT_EQ(mesh.group_subdivisions.at("rear_rim"), 1);
@@ -121,6 +121,23 @@ TEST(Deck, ReadsTwentyThousandNodes) {
   EXPECT_EQ(parse_deck(text, "deck.yaml").model->elements[0].connectivity.size(), 19999U);
 }
 
+TEST(GoodDeck, UmbrellaIsRead) {
+  const Deck deck = read_good("umbrella_all_keys.yaml");
+  ASSERT_NE(deck.umbrella(), nullptr);
+  EXPECT_EQ(deck.truss(), nullptr);
+  EXPECT_EQ(deck.rod_umbrella(), nullptr);
+  EXPECT_EQ(deck.dish(), deck.umbrella());
+  EXPECT_EQ(deck.dish()->aperture, 12);
+  EXPECT_EQ(deck.umbrella()->spokes, 5);
+  EXPECT_EQ(deck.umbrella()->surface_height, 0.1033);
+  EXPECT_EQ(deck.umbrella()->tip_radius, (std::vector<double>{8.2, 7.8, 7.7, 7.7, 7.8}));
+  EXPECT_TRUE(deck.umbrella()->separate_rings);
+  EXPECT_EQ(deck.umbrella()->fork_length, 0);
+  EXPECT_TRUE(deck.umbrella()->end_cords);
+  EXPECT_TRUE(deck.umbrella()->paired_ties);
+  EXPECT_EQ(deck.groups.at("front_peripheral").force_density, 251.1);
+}
+
 TEST(Deck, ReadsAnUmbrellaOfRodsWithoutSections) {
   const Deck deck = read_good("rod_umbrella_all_keys.yaml");
   ASSERT_NE(deck.rod_umbrella(), nullptr);
@@ -152,6 +169,30 @@ TEST(Deck, ReadsAMeridianOfPoints) {
   EXPECT_EQ(meridian.y, (std::vector<double>{0, 0.02, 0.1, 0.4, 0.9}));
 }
 
+TEST(Deck, ReadsAnInverse) {
+  const Deck deck = read_good("inverse_all_keys.yaml");
+  EXPECT_EQ(deck.rod_umbrella()->axial_stiffness, (std::vector<double>{1e9, 2e9}));
+  EXPECT_EQ(deck.rod_umbrella()->torsion_stiffness, std::vector<double>{1500});
+  EXPECT_EQ(deck.rod_umbrella()->mass_per_length, std::vector<double>{0.4});
+  EXPECT_EQ(deck.rod_umbrella()->meridian.expression, "0.1*X^2");
+  using Unknown = steps::InverseUnknownOptions;
+  const auto& inverse = std::get<steps::InverseOptions>(deck.steps.at(3).options);
+  ASSERT_EQ(inverse.targets.size(), 5U);
+  EXPECT_EQ(inverse.targets[0].radius, 2.1);
+  EXPECT_EQ(inverse.targets[0].z, 0.4);
+  EXPECT_FALSE(inverse.targets[0].x.has_value());
+  EXPECT_EQ(inverse.targets[0].weight, 2);
+  EXPECT_EQ(inverse.targets[2].meridian->coefficient, 0.1);
+  EXPECT_EQ(inverse.targets[3].meridian->kind, rod::MeridianKind::table);
+  ASSERT_EQ(inverse.unknowns.size(), 2U);
+  EXPECT_EQ(inverse.unknowns[0].quantity, Unknown::Quantity::axial_stiffness);
+  EXPECT_EQ(inverse.unknowns[0].each, Unknown::Each::cable);
+  EXPECT_EQ(inverse.unknowns[0].max, 5000);
+  EXPECT_EQ(inverse.unknowns[1].quantity, Unknown::Quantity::unstressed_length);
+  EXPECT_FALSE(inverse.unknowns[1].min.has_value());
+  EXPECT_EQ(inverse.rank_tolerance, 1e-9);
+}
+
 class StartingDeck : public testing::TestWithParam<std::string> {};
 
 TEST_P(StartingDeck, IsValid) {
@@ -167,12 +208,13 @@ INSTANTIATE_TEST_SUITE_P(Kinds, StartingDeck, testing::ValuesIn(starting_deck_ki
 });
 
 TEST(StartingDecks, UnknownKindsAreTold) {
-  for (const char* kind : {"umbrella", "rod-umbrela", "nett", ""}) {
+  for (const char* kind : {"umbrela", "rod-umbrela", "nett", ""}) {
     try {
       starting_deck(kind);
       FAIL() << kind;
     } catch (const DeckError& error) {
-      EXPECT_NE(std::string(error.what()).find("expected one of: perimeter-truss, net"), std::string::npos)
+      EXPECT_NE(std::string(error.what()).find("expected one of: perimeter-truss, umbrella, net"),
+                std::string::npos)
           << error.what();
     }
   }

@@ -72,7 +72,7 @@ TEST(Schema, ChoosesByKind) {
   ASSERT_EQ(sections.size(), 16U);
   EXPECT_EQ(sections[0]["properties"]["kind"]["const"], "cable");
   const auto& steps = json["properties"]["steps"]["items"]["oneOf"];
-  EXPECT_EQ(steps.size(), 6U);
+  EXPECT_EQ(steps.size(), 9U);
 }
 
 TEST(Schema, AsksForSectionsUnlessTheReflectorIsComplete) {

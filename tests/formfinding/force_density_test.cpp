@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <cmath>
+#include <formfinding/nets.hpp>
 #include <limits>
 #include <tautline/core/error.hpp>
 #include <tautline/formfinding/force_density.hpp>
@@ -11,67 +12,6 @@ namespace tautline::formfinding {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-/// z = r^2 / 4f
-class Dish : public Surface {
- public:
-  explicit Dish(double f) : f_(f) {}
-  double height(double x, double y) const { return (x * x + y * y) / (4 * f_); }
-  Vec3 height_and_slope(double x, double y) const override {
-    return {height(x, y), x / (2 * f_), y / (2 * f_)};
-  }
-
- private:
-  double f_;
-};
-
-/// Regular triangular net of side `s` inside a hexagon of `rings` rings, its edge fixed on the dish, the rest
-/// at the origin.
-Net triangular_net(int rings, double s, const Dish& dish) {
-  Net net;
-  std::vector<std::array<int, 2>> at;
-  for (int i = -rings; i <= rings; ++i) {
-    for (int j = -rings; j <= rings; ++j) {
-      const int ring = std::max({std::abs(i), std::abs(j), std::abs(i + j)});
-      if (ring > rings) continue;
-      const double x = s * (i + 0.5 * j), y = s * std::sqrt(0.75) * j;
-      net.fixed.push_back(ring == rings);
-      net.nodes.push_back(net.fixed.back() ? Vec3(x, y, dish.height(x, y)) : Vec3::Zero());
-      at.push_back({i, j});
-    }
-  }
-  for (std::size_t a = 0; a < at.size(); ++a) {
-    for (std::size_t b = a + 1; b < at.size(); ++b) {
-      const int di = at[b][0] - at[a][0], dj = at[b][1] - at[a][1];
-      const bool neighbours = std::max({std::abs(di), std::abs(dj), std::abs(di + dj)}) == 1;
-      if (neighbours && !(net.fixed[a] && net.fixed[b]))
-        net.branches.push_back({static_cast<int>(a), static_cast<int>(b)});
-    }
-  }
-  return net;
-}
-
-/// One free node, number 0, held by branches to the given points.
-Net star(const Points& supports) {
-  Net net;
-  net.nodes = {Vec3::Zero()};
-  net.fixed = {false};
-  for (const Vec3& support : supports) {
-    net.branches.push_back({0, static_cast<int>(net.nodes.size())});
-    net.nodes.push_back(support);
-    net.fixed.push_back(true);
-  }
-  return net;
-}
-
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const ModelError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(ForceDensity, SingleNodeIsTheWeightedMeanOfItsSupports) {
   // Sum of q_i (a_i - x) + f = 0, solved by hand.

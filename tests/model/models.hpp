@@ -68,7 +68,7 @@ inline Model two_facets() {
   add_beam(model, strut, 2, 3);
   add_beam(model, mast, 0, 4);
   model.selections["anchors"].nodes = {3, 4};
-  model.selections["everything"] = {{}, {0, 1}, {0, 1}, {0, 1}};
+  model.selections["everything"] = {{}, {0, 1}, {0, 1}, {0, 1}, {}, {}, {}, {}};
   model.supports.push_back({"ground", {"anchors"}, {3, 4}, {true, true, true, true, true, true}});
   return model;
 }

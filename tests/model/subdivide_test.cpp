@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <numeric>
 #include <set>
@@ -262,6 +263,41 @@ TEST(Subdivision, IntoOnePartIsTheStructureItself) {
     EXPECT_EQ(mesh.membranes[i].nodes, structure.membranes[i].nodes);
     EXPECT_LT((mesh.membranes[i].prestress - structure.membranes[i].prestress).norm(), 1e-12);
   }
+}
+
+TEST(Subdivision, BendsBeamsOfAnInitialMotionAsACantilever) {
+  // v = d (3 t^2 - t^3)/2 along the beam, slope d (6 t - 3 t^2)/(2 L): a cubic, so that the parts lie on it
+  // up to the square of the slope.
+  Model structure;
+  structure.nodes = {{1, 0, 0}, {1, 2, 0}};
+  const double L = 2, d = 1e-5;
+  add_beam(structure, add_beam_group(structure, "cantilever"), 0, 1);
+  structure.initial.displacement = {Vec3::Zero(), Vec3(0, 0, d)};
+  structure.initial.rotation = {Mat3::Identity(),
+                                Eigen::AngleAxisd(1.5 * d / L, Vec3::UnitX()).toRotationMatrix()};
+  const auto mesh = subdivide(structure, parts(4));
+  ASSERT_EQ(mesh.initial.displacement.size(), 5u);
+  for (int node = 0; node < 5; ++node) {
+    const double t = mesh.nodes[node].y() / L;
+    EXPECT_NEAR(mesh.initial.displacement[node].z(), d * (3 * t * t - t * t * t) / 2, 1e-14);
+    EXPECT_NEAR(mesh.initial.rotation[node](2, 1), d * (6 * t - 3 * t * t) / (2 * L), 1e-14);
+  }
+}
+
+TEST(Subdivision, CarriesAnInitialMotionOverFacetsLinearly) {
+  auto structure = two_facets();
+  structure.beams.clear();
+  structure.selections.clear();
+  structure.supports.clear();
+  const auto field = [](const Vec3& x) {
+    return Vec3(0.01 * x.x(), 0.02 * x.y() - 0.01, 0.03 * x.x() + 0.01 * x.z());
+  };
+  for (const auto& node : structure.nodes) structure.initial.displacement.push_back(field(node));
+  structure.initial.rotation.assign(structure.nodes.size(), Mat3::Identity());
+  const auto mesh = subdivide(structure, parts(4, FacetPattern::mapped));
+  ASSERT_EQ(mesh.initial.displacement.size(), mesh.nodes.size());
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
+    EXPECT_LT((mesh.initial.displacement[i] - field(mesh.nodes[i])).norm(), 1e-15) << i;
 }
 
 }  // namespace

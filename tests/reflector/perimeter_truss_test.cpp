@@ -14,38 +14,6 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<std::array<int, 2>> cables_of(const model::Model& model, const std::string& group) {
-  std::vector<std::array<int, 2>> found;
-  for (const auto& cable : model.cables)
-    if (model.groups[cable.group].name == group) found.push_back(cable.nodes);
-  return found;
-}
-
-std::vector<std::array<int, 2>> beams_of(const model::Model& model, const std::string& group) {
-  std::vector<std::array<int, 2>> found;
-  for (const auto& beam : model.beams)
-    if (model.groups[beam.group].name == group) found.push_back(beam.nodes);
-  return found;
-}
-
-/// Elements without regard to the order of their nodes.
-template <class Container>
-std::multiset<std::set<int>> as_sets(const Container& elements) {
-  std::multiset<std::set<int>> sets;
-  for (const auto& nodes : elements) sets.insert(std::set<int>(nodes.begin(), nodes.end()));
-  return sets;
-}
-
-std::multiset<std::set<int>> table(const std::string& name) {
-  std::multiset<std::set<int>> sets;
-  for (const auto& row : read_table(name)) {
-    std::set<int> nodes;
-    for (const double number : row) nodes.insert(static_cast<int>(number) - 1);
-    sets.insert(nodes);
-  }
-  return sets;
-}
-
 std::string error_of(const PerimeterTrussOptions& options) {
   try {
     make_perimeter_truss(options);

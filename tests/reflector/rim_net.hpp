@@ -1,13 +1,9 @@
 #pragma once
 /// The rim reflector of Belov (2021) and its front net, for the tests of this folder.
 
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
-#include <string>
+#include <reflector/tables.hpp>
 #include <tautline/formfinding/force_density.hpp>
 #include <tautline/reflector/perimeter_truss.hpp>
-#include <vector>
 
 namespace tautline::reflector {
 
@@ -33,21 +29,6 @@ inline formfinding::Net front_net(const model::Model& model) {
   for (const auto& cable : model.cables)
     if (model.groups[cable.group].name == "front_net") net.branches.push_back(cable.nodes);
   return net;
-}
-
-/// Numbers of a comma-separated table without its header and without columns that are not numbers.
-inline std::vector<std::vector<double>> read_table(const std::string& name) {
-  std::ifstream file(std::string(TAUTLINE_SOURCE_DIR) + "/tests/reflector/data/" + name);
-  if (!file) throw std::runtime_error("cannot read " + name);
-  std::vector<std::vector<double>> rows;
-  std::string line, cell;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    std::istringstream cells(line);
-    rows.emplace_back();
-    while (std::getline(cells, cell, ',')) rows.back().push_back(std::stod(cell));
-  }
-  return rows;
 }
 
 }  // namespace tautline::reflector

@@ -85,6 +85,20 @@ TEST(Meridian, FineTableIsTheCurveItsPointsAreOf) {
   EXPECT_NEAR(std::log2(error(20) / error(40)), 4, 0.3);
 }
 
+TEST(Meridian, FormulaHasTheDerivativesOfTheClosedForm) {
+  const Meridian curve = Meridian::expression("0.5 - X + 2*X^2 + X^3/4");
+  const Jet at = curve.at(3);
+  EXPECT_NEAR(at.value, 0.5 - 3 + 18 + 6.75, 1e-14);
+  EXPECT_NEAR(at.slope, -1 + 12 + 6.75, 1e-14);
+  EXPECT_NEAR(at.curvature, 4 + 4.5, 1e-14);
+  EXPECT_THROW(Meridian::expression("2*"), ModelError);
+}
+
+// (1, 1/2) is as far from y = x^2 as (x, x^2) with 4 x^3 = 2.
+TEST(Meridian, FootIsTheNearestPoint) {
+  EXPECT_NEAR(Meridian::parabola(1).foot(1, 0.5), std::cbrt(0.5), 1e-13);
+}
+
 TEST(Meridian, RefusesATableThatIsNoCurve) {
   EXPECT_THROW(Meridian::table({1}, {1}), ModelError);
   EXPECT_THROW(Meridian::table({0, 1, 1}, {0, 1, 2}), ModelError);

@@ -16,7 +16,7 @@ for deck in "$SOURCE"/inputs/*.yaml; do
   has "$WORK/out"
 done
 
-for kind in perimeter-truss net membrane frame rod-umbrella; do
+for kind in perimeter-truss umbrella net membrane frame rod-umbrella; do
   expect 0 "$TAUTLINE" new "$kind"
   says "$WORK/out" '^# '
   cp "$WORK/out" "$WORK/$kind.yaml"

@@ -33,10 +33,11 @@ std::string text(const YAML::Node& node, const char* key, bool required = false)
 }
 
 Run read_run(const YAML::Node& node) {
-  know_keys(node, {"name", "deck", "set", "ranks"});
-  Run run{text(node, "name", true), text(node, "deck", true), {}, 1};
+  know_keys(node, {"name", "deck", "set", "ranks", "exit"});
+  Run run{text(node, "name", true), text(node, "deck", true), {}, 1, 0};
   for (const auto& entry : node["set"]) run.overrides.push_back(entry.as<std::string>());
   if (node["ranks"]) run.ranks = node["ranks"].as<int>();
+  if (node["exit"]) run.exit_code = node["exit"].as<int>();
   return run;
 }
 

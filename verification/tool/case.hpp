@@ -14,6 +14,7 @@ struct Run {
   std::string deck;                    ///< relative to the case, else to the repository
   std::vector<std::string> overrides;  ///< path.to.key=value
   int ranks = 1;
+  int exit_code = 0;  ///< the program is meant to end with
 };
 
 enum class Check { equal, at_most, at_least, report_only };

@@ -10,6 +10,7 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <sys/wait.h>
 
 #include "case.hpp"
 #include "data.hpp"
@@ -85,8 +86,10 @@ void perform(const Run& run, const Case& c, const Settings& settings, const std:
   const std::string log = directory + ".log";
   fmt::print("{}: {}\n", run.name, command);
   std::cout.flush();
-  if (std::system((command + " >" + quoted(log) + " 2>&1").c_str()) != 0)
-    throw std::runtime_error(fmt::format("run {} failed, see {}", run.name, log));
+  const int status = std::system((command + " >" + quoted(log) + " 2>&1").c_str());
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != run.exit_code)
+    throw std::runtime_error(
+        fmt::format("run {} did not end with exit code {}, see {}", run.name, run.exit_code, log));
 }
 
 bool passes(const Result& r) {

@@ -4,6 +4,7 @@
 /// failure, doubled on success. Theory: docs/theory/stages.md
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,11 +21,34 @@ class PathProblem : public NonlinearProblem {
   virtual bool predict(Workspace&) { return true; }
   virtual void commit() = 0;     ///< keeps the present point
   virtual void roll_back() = 0;  ///< returns to the point kept last
+  /// The present point and its lambda, to be returned to at any time.
+  struct Kept {
+    virtual ~Kept() = default;
+  };
+  virtual std::shared_ptr<const Kept> keep() const = 0;
+  virtual void return_to(const Kept& kept) = 0;
+  /// q = -d residual / d lambda in the present state: what one unit of lambda adds to the load.
+  virtual void load_rate(la::Vector& q) = 0;
+  /// Weights d that make x^T d x the square of a motion's size without unit: displacements over the
+  /// structure's size, rotations in rad times the square root of `rotation_weight`; zero where held.
+  virtual void weights(double rotation_weight, la::Vector& d) const = 0;
 };
 
 struct PathPoint {
   double lambda = 0;
   NewtonSummary newton;
+  int negative_directions = 0;  ///< in which the structure is unstable there
+};
+
+/// A point at which a path becomes unstable or stable again.
+struct CriticalPoint {
+  enum class Kind { limit, bifurcation } kind = Kind::bifurcation;
+  double lambda = 0;
+  int negative_before = 0, negative_after = 0;  ///< negative pivots on either side
+  double eigenvalue = 0;  ///< of K about the weights at the point found, over that at the start of the search
+  double load_share = 0;  ///< cosine between critical mode and load: zero at a bifurcation [-]
+  la::Vector mode;        ///< critical mode, x^T d x = 1
+  std::shared_ptr<const PathProblem::Kept> kept;  ///< the problem at the point
 };
 
 struct PathSummary {
@@ -33,22 +57,24 @@ struct PathSummary {
   std::vector<PathPoint> points;  ///< converged ones, in order
   bool singular = false;          ///< the last failed attempt met a singular tangent
   int failed_attempts = 0;
-  int newton_iterations = 0;  ///< of all attempts
-  la::Inertia inertia;        ///< of the tangent at the end
+  int newton_iterations = 0;            ///< of all attempts
+  la::Inertia inertia;                  ///< of the tangent at the end
+  std::vector<CriticalPoint> critical;  ///< in the order in which the path meets them
   double lambda() const { return points.empty() ? 0 : points.back().lambda; }
 };
 
 /// What is told on the way.
 struct PathCallback {
   std::function<void(double, int, double)> iteration;  ///< (lambda aimed at, iteration, relative residual)
-  std::function<void(double)> converged;               ///< (lambda), the problem stands at the point
+  std::function<void(const PathPoint&)> converged;     ///< the problem stands at the point
 };
 
 /// @brief Follows the path to lambda = 1 or as far as it goes; the problem is left at the last converged
 /// point. Collective.
+/// @param start  lambda at which the problem stands, in equilibrium: not 0 where a run is taken up again
 /// @throws Interrupted between iterations if the user asked for it; the problem is then at its last converged
 /// point
 PathSummary follow_path(PathProblem& problem, Workspace& workspace, const NewtonOptions& options,
-                        const PathCallback& callback = {});
+                        const PathCallback& callback = {}, double start = 0);
 
 }  // namespace tautline::analysis

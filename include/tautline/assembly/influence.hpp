@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// What a change of an unstressed length does to the structure, to first order.
+/// What a change of cables does to the structure, to first order.
 
 #include <vector>
 
@@ -9,13 +9,32 @@
 
 namespace tautline::assembly {
 
-/// @brief Displacements of `nodes` for a unit change of the unstressed length of each of `cables`.
+enum class CableQuantity {
+  unstressed_length,  ///< [m]
+  axial_stiffness     ///< E A [N]
+};
+
+/// One parameter and what it changes.
+struct CableParameter {
+  struct Part {
+    int cable = 0;
+    double rate = 1;  ///< d quantity / d parameter
+  };
+  CableQuantity quantity = CableQuantity::unstressed_length;
+  std::vector<Part> parts;
+};
+
+/// @brief Displacements of `nodes` for a unit change of each parameter.
 ///
-/// One factorisation of the tangent in the present state, one right-hand side -df/dL0 for each cable, solved
-/// in blocks.
-/// @return shape (3 nodes, cables), row 3 i + c = component c of nodes[i] [m/m]; the same on every rank.
+/// One factorisation of the tangent in the present state, one right-hand side -df/dp for each parameter,
+/// solved in blocks. Cables, bars and catenaries.
+/// @return shape (3 nodes, parameters), row 3 i + c = component c of nodes[i]; the same on every rank.
 /// Collective.
 /// @throws LibraryError if the tangent is singular
+MatX influence(System& system, analysis::Workspace& workspace, const std::vector<CableParameter>& parameters,
+               const std::vector<int>& nodes);
+
+/// Of the unstressed length of each of `cables` [m/m].
 MatX length_influence(System& system, analysis::Workspace& workspace, const std::vector<int>& cables,
                       const std::vector<int>& nodes);
 

@@ -50,6 +50,21 @@ struct Drive {
   Vec3 way = Vec3::Zero();  ///< in the block's unknowns; zero where it is free [m] or [rad]
 };
 
+/// A point of a stage's path.
+struct Place : analysis::PathProblem::Kept {
+  model::State state;
+  double lambda = 0;
+  double driven_to = 0;  ///< lambda up to which supports have moved
+};
+
+/// A system at rest: all that the next stage starts from.
+struct Rest {
+  model::State state;
+  Acting acting;
+  std::vector<Vec3> turned;              ///< rotation vectors of supports so far, by node [rad]
+  std::vector<double> stiffness_factor;  ///< of the cables, see model::Cable
+};
+
 /// @brief A finite-element model in motion: model, state, boundary.
 ///
 /// The model is held whole on every rank; elements, unknowns and factors are dealt out. A stage begins with
@@ -71,6 +86,8 @@ class System : public analysis::PathProblem {
   double size() const noexcept { return size_; }
   /// Force that the rounding of the stiffest elements may leave out of balance [N].
   double rounding_force() const noexcept { return rounding_force_; }
+  /// The same of cables and beams alone [N].
+  double rounding_force_of_lines() const noexcept { return rounding_force_of_lines_; }
   int n_dofs() const noexcept { return 3 * map_.layout.total; }
   double assembly_seconds() const noexcept { return assembly_seconds_; }
 
@@ -78,13 +95,18 @@ class System : public analysis::PathProblem {
   /// of `strains`.
   void set_state(const model::State& state);
   void set_state(const model::State& state, const std::vector<double>& strains);
-  /// Back to the reference configuration with nothing acting; unstressed lengths stay.
+  /// Where the system is and what acts, to be restored, also in another run on the same mesh.
+  Rest rest() const;
+  void restore(const Rest& rest);
+  /// Back to where the model begins, with nothing acting; unstressed lengths stay.
   void reset();
   /// Present initial strain of each cable.
   std::vector<double> strains() const;
   /// Starts a stage towards `boundary` from the present state. @return what is out of balance there
   /// @throws ModelError for a moving support that holds nothing
   OutOfBalance begin_stage(const Boundary& boundary);
+  /// E A of each cable over that of its group; the stage begun next ramps out what that leaves unbalanced.
+  void set_stiffness_factors(const std::vector<double>& factors);
   /// New initial strains, one for each cable, reached at lambda = 1 of the stage begun next by begin_stage.
   void set_target_strains(std::vector<double> strains);
 
@@ -100,6 +122,25 @@ class System : public analysis::PathProblem {
   bool predict(analysis::Workspace& workspace) override;
   void commit() override;
   void roll_back() override;
+  std::shared_ptr<const Kept> keep() const override;
+  void return_to(const Kept& kept) override;
+  void load_rate(la::Vector& q) override;
+  void weights(double rotation_weight, la::Vector& d) const override;
+  /// The mean motion of nodes along a direction, as a function c . x of the unknowns' increments.
+  la::Vector mean_motion(const std::vector<int>& nodes, const Vec3& direction) const;
+  /// Moves the present state by an increment of the unknowns, e.g. along a mode. Collective.
+  void move(const la::Vector& increment);
+  /// @brief Tangent in the present geometry with the stresses that `part` times a linear response adds, and
+  /// with what acts at lambda = `part`.
+  ///
+  /// Every element gets the response without the rigid motion in it: stresses without rotations. Theory:
+  /// docs/theory/buckling.md. Collective.
+  la::SymmetricMatrix stressed_tangent(const la::Vector& response, double part);
+  /// Largest deformation of an element in a linear response: change of its nodes' places over its size, or
+  /// rotation in rad, without the rigid motion. Collective.
+  double largest_deformation(const la::Vector& response) const;
+  /// Adds what moving supports go while lambda grows by one.
+  void add_drives(la::Vector& x) const;
 
   /// Mass matrix of the free unknowns in the present state; rows and columns of held ones are zero.
   la::SymmetricMatrix mass(MassKind kind = MassKind::consistent) const;
@@ -151,6 +192,9 @@ class System : public analysis::PathProblem {
   std::vector<double> gathered(const std::vector<double>& own_complete) const;
   void apply(double lambda);
   void find_rounding();
+  /// Tangent with the element's state given by `state_of(element)`.
+  template <class StateOf>
+  void assemble_tangent(la::SymmetricMatrix& k, const StateOf& state_of);
 
   model::Model model_;
   DofMap map_;
@@ -166,7 +210,8 @@ class System : public analysis::PathProblem {
   double lambda_ = 1, driven_to_ = 0, committed_drive_ = 0, size_ = 1;
   double support_stiffness_ = 1;
   double rounding_force_ = 0, rounding_moment_ = 0;  // of the stiffest elements
-  mutable std::vector<double> magnitude_;            // of the last residual, all unknowns
+  double rounding_force_of_lines_ = 0;
+  mutable std::vector<double> magnitude_;  // of the last residual, all unknowns
   mutable double assembly_seconds_ = 0;
 };
 

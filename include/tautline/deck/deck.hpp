@@ -13,17 +13,21 @@
 #include <tautline/model/model_options.hpp>
 #include <tautline/output/output_options.hpp>
 #include <tautline/reflector/perimeter_truss_options.hpp>
+#include <tautline/reflector/umbrella_options.hpp>
 #include <tautline/rod/rod_options.hpp>
 #include <tautline/steps/step_options.hpp>
 
 namespace tautline::deck {
 
 /// The kinds of `reflector`.
-using Reflector = std::variant<reflector::PerimeterTrussOptions, rod::UmbrellaOptions>;
+using Reflector =
+    std::variant<reflector::PerimeterTrussOptions, reflector::UmbrellaOptions, rod::UmbrellaOptions>;
 
 struct Deck {
   std::string path;
-  std::string sha256;  ///< of the file's bytes, lower-case hex
+  std::string sha256;       ///< of the file's bytes, lower-case hex
+  std::string fingerprint;  ///< of all that steps stand on: structure, supports, loads, with values put in
+  std::vector<std::string> step_fingerprints;  ///< of each step
   std::string title;
   std::map<std::string, std::string> parameters;  ///< values in force, after --set
   std::optional<Reflector> reflector;             ///< exactly one of reflector and model is present
@@ -40,6 +44,15 @@ struct Deck {
   /// The reflector if it is a perimeter truss, or null.
   const reflector::PerimeterTrussOptions* truss() const {
     return reflector ? std::get_if<reflector::PerimeterTrussOptions>(&*reflector) : nullptr;
+  }
+  /// The reflector if it is an umbrella of spokes and nets, or null.
+  const reflector::UmbrellaOptions* umbrella() const {
+    return reflector ? std::get_if<reflector::UmbrellaOptions>(&*reflector) : nullptr;
+  }
+  /// What reflectors of nets and ties have in common, or null.
+  const reflector::DishOptions* dish() const {
+    if (truss() != nullptr) return truss();
+    return umbrella();
   }
   /// The reflector if it is an umbrella of rods, or null.
   const rod::UmbrellaOptions* rod_umbrella() const {

@@ -37,8 +37,8 @@ struct ShellMotion {
 /// Stress resultants at the centre, in axes 1, 2 of the current mid-surface (frame carried along).
 struct ShellForces {
   Vec3 membrane{0, 0, 0};  ///< N11, N22, N12, second Piola-Kirchhoff [N/m]
-  Vec3 moment{0, 0, 0};    ///< M11, M22, M12 [N m/m]
-  Vec<2> shear{0, 0};      ///< Q1, Q2 [N/m]
+  Vec3 moment{0, 0, 0};    ///< M11, M22, M12, positive: tension where the director points [N m/m]
+  Vec<2> shear{0, 0};      ///< Q1, Q2, positive: along the director on a face of normal 1, 2 [N/m]
 };
 
 template <int N>

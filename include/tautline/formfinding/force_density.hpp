@@ -18,6 +18,23 @@ namespace tautline::formfinding {
 /// @throws ModelError if D is singular: names a free node that hangs on nothing.
 Points solve_linear(const Net& net, const VecX& force_density, const Surface* surface = nullptr);
 
+/// What given force densities make of a net.
+struct LinearForm {
+  Points nodes;                 ///< all nodes [m]
+  VecX tension;                 ///< q L [N]; negative: compression
+  VecX length;                  ///< [m]
+  Points reaction;              ///< force that each node still needs: of supports, ties and guides [N]
+  double out_of_balance = 0;    ///< largest force at a free node along the directions in equilibrium [N]
+  int negative_directions = 0;  ///< negative eigenvalues of D, over all directions
+  std::vector<std::string> warnings;  ///< compression members, indefiniteness
+};
+
+/// @brief solve_linear, with everything that follows from it.
+///
+/// Negative force densities (compression members) are allowed. If D is indefinite with them, the shape is in
+/// equilibrium but not stable as a net of constant force densities; a warning says so.
+LinearForm find_linear_form(const Net& net, const VecX& force_density, const Surface* surface = nullptr);
+
 /// @brief What the nonlinear solve found.
 ///
 /// residual_z = -(sum of q (z_j - z_i) over the branches of node i + load_z): at a free node on a surface
@@ -32,13 +49,16 @@ struct ForceDensityResult {
   VecX tension;        ///< q L [N]
   VecX residual_z;     ///< force along z that each node still needs, one for each node [N]
   int iterations = 0;
-  /// max |T - T_target| before the first and after each iteration [N]
+  /// max |T - T_target| before the first and after each iteration [N]; where the positions are the unknowns
+  /// the tensions are met throughout, and this is the largest force out of balance [N]
   std::vector<double> constraint_residual;
   std::vector<double> constraint_residual_norm;  ///< Euclidean norm of T - T_target, likewise [N]
   std::vector<Vec3> coordinate_norm;             ///< |x|, |y|, |z| over free nodes after each iteration [m]
   std::vector<double> step_relaxation;           ///< alpha of eq. (2.25) in each iteration
   double out_of_balance = 0;  ///< largest nodal force at a free node along the directions in equilibrium [N]
-  double condition_number = 0;  ///< cond(G^T G) at the end; 0 if not computed
+  double condition_number = 0;                                  ///< cond(G^T G) at the end; 0 if not computed
+  TensionMethod method = TensionMethod::step_of_smallest_norm;  ///< that found it
+  int inner_iterations = 0;                                     ///< of the linear solver, in all
 };
 
 /// @brief Finds force densities with the tensions asked for (eqs 2.13-2.26, minimal-norm step 2.53,

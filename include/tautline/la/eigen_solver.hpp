@@ -25,4 +25,16 @@ struct EigenPairs {
 EigenPairs solve_vibration(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count,
                            double shift = 0);
 
+/// Which end of a spectrum.
+enum class Extreme { lowest, highest, both };
+
+/// @brief Up to `count` eigenvalues of A x = nu B x farthest from zero, below it, above it or on both sides,
+/// farthest first; A symmetric, B positive definite, patterns within that of B. Collective.
+///
+/// Eigenvalues below 1e-10 of the largest are taken for zero. That none is left out is shown by the inertia
+/// of A - s B beyond those found.
+/// @return vectors normalised to x^T B x = 1; residuals |A x - nu B x| / |nu| / (|diagonal of B|_max |x|)
+/// @throws LibraryError if SLEPc fails
+EigenPairs solve_extreme(const SymmetricMatrix& a, const SymmetricMatrix& b, int count, Extreme which);
+
 }  // namespace tautline::la

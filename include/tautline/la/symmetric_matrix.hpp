@@ -44,9 +44,15 @@ class SymmetricMatrix {
   /// A copy with `factor` times `other` added, whose pattern must lie within this one's.
   SymmetricMatrix plus(double factor, const SymmetricMatrix& other) const;
   double norm_of_diagonal() const;
+  /// Sums of |A_ij| over each of this rank's own rows. Collective.
+  std::vector<double> absolute_row_sums() const;
 
  private:
   SymmetricMatrix() = default;
+  /// Calls visit(row, column, value) for this rank's entries on and above the diagonal.
+  template <class Visit>
+  void for_each_upper(const Visit& visit) const;
+
   _p_Mat* mat_ = nullptr;
   BlockLayout layout_;
 };

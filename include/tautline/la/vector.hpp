@@ -33,6 +33,10 @@ class Vector {
   void set_zero();
   double norm() const;
   double dot(const Vector& other) const;
+  void copy(const Vector& other);
+  void scale(double factor);
+  void add(double factor, const Vector& other);  ///< this += factor * other
+  void multiply_entries(const Vector& by);       ///< entry by entry
   /// Copies the rank's own entries out of or into the vector.
   void read(std::span<double> local) const;
   void write(std::span<const double> local);

@@ -40,14 +40,14 @@ inline CableData cable_data(const Model& model, const Cable& cable) {
   const double thermal = group.thermal_expansion * group.temperature_change;
   const double strain =
       thermal == 0 ? cable.initial_strain : (cable.initial_strain - thermal) / (1 + thermal);
-  return {{group.cable.axial_stiffness, strain, group.kind == ElementKind::bar},
+  return {{model.axial_stiffness(cable), strain, group.kind == ElementKind::bar},
           reference_nodes<2>(model, cable.nodes)};
 }
 
 inline element::CatenaryProperties catenary_properties(const Model& model, const Cable& cable) {
   const Group& group = model.groups[cable.group];
   const double warm = 1 + group.thermal_expansion * group.temperature_change;
-  return {group.cable.axial_stiffness, model.unstressed_length(cable) * warm,
+  return {model.axial_stiffness(cable), model.unstressed_length(cable) * warm,
           group.cable.mass_per_length / warm};
 }
 

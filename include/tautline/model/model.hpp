@@ -65,8 +65,9 @@ constexpr bool is_cable_like(ElementKind kind) {
 struct Cable {
   std::array<int, 2> nodes;
   int group = 0;
-  double initial_strain = 0;  ///< l_ref / L0 - 1, see element::CableProperties
-  int parent = 0;             ///< index of the cable in the structure before subdivision
+  double initial_strain = 0;    ///< l_ref / L0 - 1, see element::CableProperties
+  int parent = 0;               ///< index of the cable in the structure before subdivision
+  double stiffness_factor = 1;  ///< its E A over that of the group
 };
 
 struct Beam {
@@ -166,8 +167,20 @@ struct Load {
   Vec3 acceleration = Vec3::Zero();   ///< body force per mass on the whole structure, e.g. gravity [m/s^2]
 };
 
+/// The load `factor` times as large.
+Load scaled(const Load& load, double factor);
+
+/// Where an analysis begins, if not in the reference configuration: each list is empty, or has one entry for
+/// each node.
+struct InitialMotion {
+  Points displacement;         ///< [m]
+  std::vector<Mat3> rotation;  ///< identity where the node has no rotations
+  bool empty() const { return displacement.empty(); }
+};
+
 struct Model {
   Points nodes;  ///< reference coordinates [m]
+  InitialMotion initial;
   std::vector<Group> groups;
   std::vector<Cable> cables;
   std::vector<Beam> beams;
@@ -197,6 +210,10 @@ struct Model {
 
   double reference_length(const Cable& cable) const;
   double unstressed_length(const Cable& cable) const;
+  /// E A [N].
+  double axial_stiffness(const Cable& cable) const {
+    return groups[static_cast<std::size_t>(cable.group)].cable.axial_stiffness * cable.stiffness_factor;
+  }
 };
 
 /// Applies `visit` to the list of each kind of element.

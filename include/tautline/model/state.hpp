@@ -16,6 +16,8 @@ struct State {
 
   /// The reference configuration of `model`.
   static State reference(const Model& model);
+  /// Where an analysis of `model` begins: the reference configuration moved by its initial motion.
+  static State initial(const Model& model);
 };
 
 /// Current positions, reference + displacement [m].

@@ -24,8 +24,10 @@ struct SubdivideOptions {
 /// nodes.
 ///
 /// Cables that are no facet side stay whole. The unstressed length of a cable is shared out equally.
-/// Selections and supports follow their elements; a support on explicit nodes stays on those nodes. `mapped`
-/// needs an even number of subdivisions. @throws ModelError for subdivisions < 1 or conflicting overrides.
+/// An initial motion is carried along: linear between the corners of facets, cubic along beams, as their ends
+/// turn. Selections and supports follow their elements; a support on explicit nodes stays on those nodes.
+/// `mapped` needs an even number of subdivisions. @throws ModelError for subdivisions < 1 or conflicting
+/// overrides.
 Model subdivide(const Model& structure, const SubdivideOptions& options);
 
 }  // namespace tautline::model

@@ -4,6 +4,7 @@
 
 #include <tautline/core/types.hpp>
 #include <tautline/formfinding/net.hpp>
+#include <tautline/reflector/dish_options.hpp>
 
 namespace tautline::reflector {
 
@@ -15,8 +16,9 @@ class Paraboloid : public formfinding::Surface {
   /// @param focal_length F [m]
   /// @param clearance X_A, distance from the parent axis to the near edge [m]; -aperture/2 gives the
   /// axisymmetric dish
+  /// @param raised by so much along z [m]
   /// @throws ModelError unless aperture, focal_length > 0 and clearance >= -aperture/2
-  Paraboloid(double aperture, double focal_length, double clearance);
+  Paraboloid(double aperture, double focal_length, double clearance, double raised = 0);
 
   double aperture() const noexcept { return aperture_; }
   double focal_length() const noexcept { return focal_length_; }
@@ -31,7 +33,10 @@ class Paraboloid : public formfinding::Surface {
   Vec3 to_parent(const Vec3& point) const;
 
  private:
-  double aperture_, focal_length_, offset_, tilt_, shift_;
+  double aperture_, focal_length_, offset_, raised_, tilt_, shift_;
 };
+
+/// The surface that the options describe. @throws ModelError
+Paraboloid make_paraboloid(const DishOptions& options);
 
 }  // namespace tautline::reflector

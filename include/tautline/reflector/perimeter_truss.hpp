@@ -9,8 +9,6 @@
 
 namespace tautline::reflector {
 
-Paraboloid make_paraboloid(const PerimeterTrussOptions& options);
-
 /// @brief Nodes, elements, groups (without sections) and selections.
 ///
 /// Element groups: front_net, rear_net, ties, diagonals (cables); front_rim, rear_rim, struts (beams); cloth

@@ -3,6 +3,7 @@
 /// The meridian Y = F(X) of the surface wanted. Theory: docs/theory/rod.md
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include <tautline/rod/rod_options.hpp>
@@ -23,6 +24,8 @@ class Meridian {
   explicit Meridian(Function f, std::vector<double> breaks = {});
   /// Y = coefficient X^2.
   static Meridian parabola(double coefficient);
+  /// Y as a formula of X. @throws ModelError if it cannot be read
+  static Meridian expression(const std::string& text);
   /// Cubics through the points, monotone between them (Hyman 1983), straight beyond them.
   /// @throws ModelError unless two or more points with rising x are given
   static Meridian table(std::vector<double> x, std::vector<double> y);
@@ -36,6 +39,8 @@ class Meridian {
   double arc_length(double x1, double x2) const;
   /// The X at which `length` has been gone along the curve from x1 [m].
   double advance(double x1, double length) const;
+  /// X of the point of the curve nearest to a point near it [m].
+  double foot(double x, double y) const;
   /// Distance of a point near the curve from it, positive above (towards +Y) [m].
   double distance(double x, double y) const;
 

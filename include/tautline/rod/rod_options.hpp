@@ -1,12 +1,14 @@
 #pragma once
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace tautline::rod {
 
 enum class MeridianKind {
-  parabola,  ///< Y = coefficient X^2
-  table      ///< monotone cubics through points
+  parabola,   ///< Y = coefficient X^2
+  table,      ///< monotone cubics through points
+  expression  ///< a formula of X
 };
 
 /// The curve Y = F(X) whose rotation about the axis Y is the surface wanted; X is the distance from the axis.
@@ -14,6 +16,7 @@ struct MeridianOptions {
   MeridianKind kind = MeridianKind::parabola;
   double coefficient = 0;    ///< lambda of the parabola [1/m]
   std::vector<double> x, y;  ///< points of the table, x rising [m]
+  std::string expression;    ///< F as a formula of X, see tautline::Expression [m]
 };
 
 enum class CableLaw {
@@ -41,6 +44,10 @@ struct UmbrellaOptions {
   double straight_angle = 60;             ///< beta_0, from X to the straight rods, cables just taut [degree]
   MeridianOptions meridian;
   CableOptions cable;
+  // Of the rods as beams in space.
+  std::vector<double> axial_stiffness{1e10};  ///< EA of the links; large: as good as inextensible [N]
+  std::vector<double> mass_per_length{0.0};   ///< of the links [kg/m]
+  std::vector<double> torsion_stiffness;      ///< GJ of the links; empty: EI / 1.3, a round section [N m2]
 };
 
 /// Quadratic shortening of a bent link, u = -(6/5 v^2/a - c1 v theta + c2 a theta^2) / 2.

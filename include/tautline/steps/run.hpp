@@ -14,6 +14,7 @@ namespace tautline::steps {
 struct RunSettings {
   std::string directory;  ///< where results go; made if it is not there
   bool pictures = true;   ///< draw PNG pictures (the deck can switch them off, too)
+  std::string from;       ///< directory of results whose checkpoints the run goes on from; empty: begin anew
 };
 
 /// @brief Runs a deck. Collective. Writes results.json after every step, so that whatever happens a valid

@@ -7,30 +7,16 @@
 #include <variant>
 #include <vector>
 
+#include <tautline/analysis/arc_length_options.hpp>
 #include <tautline/analysis/newton_options.hpp>
 #include <tautline/assembly/mass_options.hpp>
 #include <tautline/core/error.hpp>
-#include <tautline/formfinding/force_density_options.hpp>
 #include <tautline/model/subdivide.hpp>
 #include <tautline/reflector/tuning_options.hpp>
 #include <tautline/rod/rod_options.hpp>
+#include <tautline/steps/form_finding_options.hpp>
 
 namespace tautline::steps {
-
-/// `kind: form_finding`. On a reflector: `net` is bound to the paraboloid, mirrored to `mirror`, `ties` get
-/// the vertical residual. On a plain model: `net` in space, fixed where supports and other elements' nodes
-/// are.
-struct FormFindingOptions {
-  std::vector<std::string>
-      net;  ///< cable groups; empty: front_net of a reflector, all cable groups otherwise
-  std::vector<std::string>
-      fixed;  ///< groups or selections whose nodes are fixed besides the supports (plain models)
-  enum class Method {
-    tension,
-    linear
-  } method = Method::tension;  ///< prescribed tensions, or given force densities
-  formfinding::ForceDensityOptions solver;
-};
 
 /// `kind: mesh`
 struct MeshOptions {
@@ -44,6 +30,27 @@ struct StageOptions {
   SourceLocation where;
 };
 
+/// How the last stage of an equilibrium is followed.
+enum class Control { load, arc_length };
+
+/// A coordinate direction.
+enum class Axis { x, y, z };
+
+/// Where a path that is followed by its length ends, beside ArcLengthOptions.
+struct UntilOptions {
+  double load_factor = 1;
+  std::optional<double> least_load_factor;
+  std::vector<std::string> on;  ///< groups or selections whose mean displacement is watched
+  Axis direction = Axis::z;
+  std::optional<double> displacement;  ///< from the reference configuration [m]
+};
+
+/// Who chooses the stages of a release.
+enum class Release { as_given, automatic };
+
+/// What is tried where Newton's method fails.
+enum class Fallback { none, dynamic_relaxation };
+
 /// `kind: equilibrium`
 struct EquilibriumOptions {
   std::vector<StageOptions> stages;  ///< empty: one stage with the supports only
@@ -52,6 +59,32 @@ struct EquilibriumOptions {
   bool reset = false;                ///< start again from the reference configuration (as form-found)
   int increments = 1;                ///< the last stage comes to rest at lambda = 1/n, 2/n, ..., 1
   std::vector<std::string> monitor;  ///< groups or selections whose motion is reported at every rest
+  Control control = Control::load;
+  analysis::ArcLengthOptions arc_length;
+  UntilOptions until;
+  Release release = Release::as_given;
+  Fallback fallback = Fallback::none;
+};
+
+/// `kind: buckling`
+struct BucklingOptions {
+  /// Loads that are scaled; not given: all of the deck that do not act yet.
+  std::optional<std::vector<std::string>> loads;
+  int modes = 3;
+  enum class Sign { both, positive, negative } sign = Sign::both;
+};
+
+/// `kind: collapse`
+struct CollapseOptions {
+  std::optional<std::vector<std::string>> loads;  ///< as in BucklingOptions, without `disturbance`
+  std::vector<std::string> disturbance;           ///< loads that act in full from the start
+  std::vector<std::string> monitor;               ///< whose motion tells
+  double step = 0.05;                             ///< over the linear buckling load [-]
+  double growth = 1.5;                            ///< of the monitored displacement in one step
+  std::optional<double> linear_factor;            ///< not given: by linear buckling
+  double last = 1.2;                              ///< the loads go no farther, over the linear buckling load
+  analysis::ArcLengthOptions arc_length;  ///< for the limit or bifurcation of the undisturbed structure
+  std::vector<double> working_forces;     ///< compressions of members in service [N]
 };
 
 /// `kind: tuning`
@@ -74,10 +107,44 @@ struct RodShapingOptions {
   std::optional<int> max_iterations;  ///< likewise
   /// E_T F_k of cables that are given, with the rods turned to the stop; not given: cables are looked for [N]
   std::optional<std::vector<double>> stiffness;
+  /// Constant forces on the nodes towards the axis, in place of cables [N].
+  std::optional<std::vector<double>> reaction;
+  double start_angle = 0;  ///< with `reaction`: bend of the whole rod that the search begins from [degree]
 };
 
-using AnyStep = std::variant<FormFindingOptions, MeshOptions, EquilibriumOptions, TuningStepOptions,
-                             ModalOptions, RodShapingOptions>;
+/// What each of some nodes is asked for; coordinates not given are free.
+struct InverseTargetOptions {
+  std::vector<std::string> on;                   ///< groups or selections
+  std::optional<double> x, y, z;                 ///< coordinates [m]
+  std::optional<double> radius;                  ///< distance from the z axis [m]
+  std::optional<rod::MeridianOptions> meridian;  ///< to lie on the curve's surface of revolution about z
+  double weight = 1;                             ///< of its misses in the sum of squares, before squaring
+  SourceLocation where;
+};
+
+/// Cables that may be changed.
+struct InverseUnknownOptions {
+  enum class Quantity { unstressed_length, axial_stiffness };
+  enum class Each { group, cable };
+  std::vector<std::string> on;  ///< groups or selections
+  Quantity quantity = Quantity::unstressed_length;
+  Each each = Each::group;         ///< one unknown for each name, a common factor; or one for each cable
+  std::optional<double> min, max;  ///< of the quantity [m] or [N]; none: a thousandth of the start, no limit
+  SourceLocation where;
+};
+
+/// `kind: inverse`, from an equilibrium
+struct InverseOptions {
+  std::vector<InverseTargetOptions> targets;
+  std::vector<InverseUnknownOptions> unknowns;
+  double tolerance = 1e-6;       ///< largest weighted miss of a target that is met [m]
+  double rank_tolerance = 1e-8;  ///< singular values below this part of the largest count as zero
+  int max_iterations = 50;
+};
+
+using AnyStep =
+    std::variant<FormFindingOptions, MeshOptions, EquilibriumOptions, TuningStepOptions, ModalOptions,
+                 BucklingOptions, CollapseOptions, RodShapingOptions, InverseOptions>;
 
 struct Step {
   std::string kind;  ///< as written in the deck

@@ -21,6 +21,11 @@ Table mode_table(const nlohmann::ordered_json& step, double mass);
 Table buckling_table(const nlohmann::ordered_json& step);
 /// The nodes of a bent rod with their cables.
 Table rod_table(const nlohmann::ordered_json& step);
+/// The same of an umbrella solved in space, the mean over its rods.
+Table space_rods_table(const nlohmann::ordered_json& rods);
+/// What an inverse found; empty where there are too many to be read, which are in its cables.csv.
+Table unknown_table(const nlohmann::ordered_json& unknowns);
+Table target_table(const nlohmann::ordered_json& targets);
 Table path_table(const nlohmann::ordered_json& path);
 
 }  // namespace tautline::output::detail

@@ -1,0 +1,85 @@
+#pragma once
+/// @file
+/// What may be asked of a net in stage 1 (Belov 2021, eqs 2.62-2.72), and the answer.
+
+#include <array>
+#include <string>
+#include <tautline/formfinding/constrained_options.hpp>
+#include <tautline/formfinding/constraint_options.hpp>
+#include <tautline/formfinding/net.hpp>
+#include <vector>
+
+namespace tautline::formfinding {
+
+/// The same demand on several branches or nodes.
+struct Constraint {
+  ConstraintKind kind = ConstraintKind::tension;
+  std::string name;           ///< as the user knows it: of a group of cables, of a set of supports
+  std::vector<int> members;   ///< branches; for reactions nodes
+  std::vector<double> value;  ///< one for all or one for each; none for equal_tension
+};
+
+/// A net and what is asked of it. Vectors with one entry for each branch may be empty.
+struct ConstrainedNet {
+  Net net;
+  const Surface* surface = nullptr;
+  std::vector<Constraint> constraints;
+  VecX force_density;      ///< to start from [N/m]; empty: options.initial_force_density everywhere
+  std::vector<bool> held;  ///< branches that keep the force density they start with
+  VecX lower, upper;       ///< bounds of the force densities [N/m]; NaN or empty: none
+  VecX axial_stiffness;    ///< EA [N], for unstressed lengths
+  std::vector<std::array<int, 3>> triangles = {};  ///< of cloth on the net, node indices
+  VecX surface_stress = {};                        ///< of every triangle, the same in all directions [N/m]
+};
+
+/// One row of a constraint that is not met.
+struct Deviation {
+  std::string constraint;  ///< its name
+  ConstraintKind kind = ConstraintKind::tension;
+  int member = -1;  ///< branch, or node of a reaction
+  double wanted = 0, found = 0;
+  double relative = 0;  ///< (found - wanted) / scale of the row
+};
+
+/// "length of ridge, branch 12: 1.8 m wanted, 2 m found"
+std::string to_string(const Deviation& deviation);
+
+struct ConstrainedResult {
+  bool converged = false;
+  std::string reason;                 ///< one sentence with both sides of the inequality
+  std::vector<std::string> warnings;  ///< pressed branches, indefinite equations, active bounds
+  std::string method;                 ///< of the steps: dense, lsqr or position_newton
+  Points nodes;                       ///< all nodes [m]
+  VecX force_density;                 ///< [N/m]
+  VecX tension;                       ///< q L [N]
+  VecX length;                        ///< [m]
+  VecX unstressed_length;             ///< [m]; empty without axial_stiffness
+  Points reaction;                    ///< what each node still needs to be in equilibrium [N]
+  VecX cloth_force_density;           ///< pull of the cloth along each branch [N/m]; empty without cloth
+  int cloth_iterations = 0;           ///< how often the shape of the cloth was renewed
+  double out_of_balance = 0;          ///< largest force at a node along the directions in equilibrium [N]
+  int iterations = 0;
+  int inner_iterations = 0;      ///< of the linear solver, in all
+  std::vector<double> residual;  ///< largest scaled residual before the first and after each iteration [-]
+  std::vector<double> step_relaxation;  ///< alpha of eq. (2.25), or of a damped step 1
+  int n_rows = 0;                       ///< constraints asked for
+  int rank = -1;                        ///< of G^T at the end; -1 if not computed
+  double condition_number = 0;  ///< cond(G^T G) of the scaled rows, rounding-level singular values apart
+  bool condition_is_estimate = false;  ///< from below, by the Lanczos process of the last step
+  bool least_squares_optimum = false;  ///< not converged because the constraints contradict each other here
+  std::vector<Deviation> worst;        ///< rows not met, largest first, at most options.n_worst
+};
+
+/// @brief The shape in which the net meets its constraints: Newton's method on the force densities with steps
+/// of smallest norm (2.14-2.26, 2.53), any mixture of constraints (2.73).
+///
+/// Rows are scaled by the value asked for, which makes them dimensionless. Constraints that cannot be met
+/// together lead to the nearest shape in the sense of least squares of the scaled rows; `reason` and `worst`
+/// tell. Does not throw because of the iteration.
+///
+/// Cloth pulls along the sides of its triangles with natural force densities, which follow from the shape:
+/// the net is solved again with those of its last shape until they agree.
+/// @throws ModelError if the net or a constraint makes no sense
+ConstrainedResult find_form(const ConstrainedNet& problem, const ConstrainedOptions& options = {});
+
+}  // namespace tautline::formfinding

@@ -1,0 +1,221 @@
+#include "steps/checkpoint.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include <tautline/core/error.hpp>
+#include <tautline/la/session.hpp>
+
+namespace tautline::steps {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* format_name = "tautline-checkpoint";
+constexpr int format_version = 1;
+constexpr const char* point_file = "point.bin";
+
+double now_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Matrices of a fixed size one after the other, as a list of numbers.
+template <class Matrix>
+Json flat(const std::vector<Matrix>& list) {
+  std::vector<double> values;
+  for (const auto& m : list) values.insert(values.end(), m.data(), m.data() + m.size());
+  return values;
+}
+
+template <class Matrix>
+std::vector<Matrix> unflat(const Json& values) {
+  const auto numbers = values.get<std::vector<double>>();
+  std::vector<Matrix> list(numbers.size() / static_cast<std::size_t>(Matrix::SizeAtCompileTime));
+  for (std::size_t i = 0; i < list.size(); ++i)
+    std::copy_n(numbers.data() + i * Matrix::SizeAtCompileTime, Matrix::SizeAtCompileTime, list[i].data());
+  return list;
+}
+
+Json to_json(const model::State& state) {
+  return {{"displacement", flat(state.displacement)},
+          {"rotation", flat(state.rotation)},
+          {"hinge_angle", flat(state.hinge_angle)}};
+}
+
+model::State state_of(const Json& json) {
+  return {unflat<Vec3>(json["displacement"]), unflat<Mat3>(json["rotation"]),
+          unflat<Vec3>(json["hinge_angle"])};
+}
+
+Json to_json(const assembly::Rest& rest) {
+  const auto& a = rest.acting;
+  return {{"state", to_json(rest.state)}, {"force", flat(a.force)},
+          {"moment", flat(a.moment)},     {"line", flat(a.line)},
+          {"pressure", a.pressure},       {"temperature", a.temperature},
+          {"strain", a.strain},           {"acceleration", flat(std::vector<Vec3>{a.acceleration})},
+          {"turned", flat(rest.turned)},  {"stiffness_factor", rest.stiffness_factor}};
+}
+
+assembly::Rest rest_of(const Json& json) {
+  assembly::Acting acting{unflat<Vec3>(json["force"]),
+                          unflat<Vec3>(json["moment"]),
+                          unflat<Vec3>(json["line"]),
+                          json["pressure"].get<std::vector<double>>(),
+                          json["temperature"].get<std::vector<double>>(),
+                          json["strain"].get<std::vector<double>>(),
+                          unflat<Vec3>(json["acceleration"]).front()};
+  return {state_of(json["state"]), std::move(acting), unflat<Vec3>(json["turned"]),
+          json["stiffness_factor"].get<std::vector<double>>()};
+}
+
+Json to_json(const StagePoint& point) {
+  return {{"stage", point.stage},
+          {"start", to_json(point.start)},
+          {"state", to_json(point.place.state)},
+          {"lambda", point.place.lambda},
+          {"driven_to", point.place.driven_to},
+          {"entry", point.entry},
+          {"way", point.way},
+          {"critical", point.critical}};
+}
+
+StagePoint point_of(const Json& json) {
+  StagePoint point;
+  point.stage = json["stage"];
+  point.start = rest_of(json["start"]);
+  point.place.state = state_of(json["state"]);
+  point.place.lambda = json["lambda"];
+  point.place.driven_to = json["driven_to"];
+  point.entry = json["entry"];
+  point.way = json["way"];
+  point.critical = json["critical"];
+  return point;
+}
+
+Json to_json(const Checkpoint& checkpoint, const deck::Deck& deck) {
+  const std::size_t fixed = static_cast<std::size_t>(checkpoint.steps_done) + (checkpoint.point ? 1 : 0);
+  Json json{{"format", format_name},
+            {"version", format_version},
+            {"structure", deck.fingerprint},
+            {"steps", std::vector<std::string>(deck.step_fingerprints.begin(),
+                                               deck.step_fingerprints.begin() + static_cast<long>(fixed))},
+            {"steps_done", checkpoint.steps_done},
+            {"results", checkpoint.results},
+            {"acting_loads", checkpoint.acting_loads}};
+  if (checkpoint.rest) json["rest"] = to_json(*checkpoint.rest);
+  if (checkpoint.point) json["point"] = to_json(*checkpoint.point);
+  return json;
+}
+
+Checkpoint checkpoint_of(const Json& json) {
+  Checkpoint checkpoint{
+      json["steps_done"], json["results"], json["acting_loads"].get<std::vector<std::string>>(), {}, {}};
+  if (json.contains("rest")) checkpoint.rest = rest_of(json["rest"]);
+  if (json.contains("point")) checkpoint.point = point_of(json["point"]);
+  return checkpoint;
+}
+
+Json read(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  Json json = Json::from_cbor(bytes, true, false);
+  if (json.is_discarded() || json.value("format", "") != format_name ||
+      json.value("version", 0) != format_version)
+    throw LibraryError(
+        fmt::format("{} is no checkpoint of this version of the program: run without --from", path.string()));
+  return json;
+}
+
+/// Whether the first steps of the deck are those of the checkpoint.
+bool fits(const Json& json, const deck::Deck& deck) {
+  const auto steps = json["steps"].get<std::vector<std::string>>();
+  return steps.size() <= deck.step_fingerprints.size() &&
+         std::equal(steps.begin(), steps.end(), deck.step_fingerprints.begin());
+}
+
+std::string step_file(int steps_done) {
+  return fmt::format("step_{}.bin", steps_done);
+}
+
+[[noreturn]] void refuse(const deck::Deck& deck, const std::string& directory) {
+  Diagnostic diagnostic;
+  diagnostic.where.file = deck.path;
+  diagnostic.message = fmt::format("the checkpoints in {} belong to another structure", directory);
+  diagnostic.expectation = "expected a deck that differs in its steps, title, solver and output only";
+  diagnostic.suggestion = "run without --from";
+  throw DeckError({diagnostic});
+}
+
+}  // namespace
+
+Checkpoints::Checkpoints(const deck::Deck& deck, std::string directory)
+    : deck_(deck), directory_(std::move(directory)) {}
+
+void Checkpoints::write(const Checkpoint& checkpoint, const std::string& name) {
+  la::on_root([&] {
+    fs::create_directories(directory_);
+    const fs::path path = fs::path(directory_) / name, fresh = path.string() + ".tmp";
+    {
+      const auto bytes = Json::to_cbor(to_json(checkpoint, deck_));
+      std::ofstream file(fresh, std::ios::binary);
+      file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+      if (!file.flush()) throw LibraryError(fmt::format("cannot write {}", fresh.string()));
+    }
+    fs::rename(fresh, path);
+  });
+}
+
+void Checkpoints::save(const Checkpoint& checkpoint) {
+  write(checkpoint, step_file(checkpoint.steps_done));
+  la::on_root([&] { fs::remove(fs::path(directory_) / point_file); });
+  latest_ = checkpoint;
+  next_ = 0;
+}
+
+void Checkpoints::begin_at(const Checkpoint& checkpoint) {
+  latest_ = checkpoint;
+  latest_.point.reset();
+}
+
+void Checkpoints::save_point(const Checkpoint& checkpoint, bool always) {
+  const double start = now_seconds();
+  if (!la::true_on_any_rank(always || start >= next_)) return;
+  write(checkpoint, point_file);
+  const double seconds = now_seconds() - start;
+  next_ = start + 20 * seconds;
+}
+
+std::optional<Checkpoint> find_checkpoint(const deck::Deck& deck, const std::string& directory) {
+  const fs::path folder = fs::path(directory) / "checkpoints";
+  if (!fs::is_directory(folder))
+    throw LibraryError(
+        fmt::format("there are no checkpoints in {}: --from wants the directory of results of an "
+                    "earlier run",
+                    directory));
+  std::vector<std::string> names{point_file};
+  for (int k = static_cast<int>(deck.steps.size()); k > 0; --k) names.push_back(step_file(k));
+  bool any = false, same = false;
+  std::optional<Checkpoint> best;
+  for (const auto& name : names) {
+    if (!fs::exists(folder / name)) continue;
+    const Json json = read(folder / name);
+    any = true;
+    if (json["structure"] != deck.fingerprint) continue;
+    same = true;
+    if (!fits(json, deck)) continue;
+    auto checkpoint = checkpoint_of(json);
+    const bool farther = !best || checkpoint.steps_done > best->steps_done;
+    if (farther) best = std::move(checkpoint);
+  }
+  if (any && !same) refuse(deck, directory);
+  return best;
+}
+
+}  // namespace tautline::steps

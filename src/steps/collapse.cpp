@@ -1,0 +1,140 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <tautline/core/error.hpp>
+
+#include "steps/context.hpp"
+#include "steps/linear_buckling.hpp"
+#include "steps/path_results.hpp"
+#include "steps/summaries.hpp"
+
+namespace tautline::steps {
+
+namespace {
+
+constexpr int certain_digits = 7;
+
+/// Length of the mean displacement of what is watched, from where the disturbance left it or from the start
+/// [m].
+double watched_motion(const assembly::System& system, const std::vector<int>& nodes) {
+  Vec3 mean = Vec3::Zero();
+  for (const int node : nodes) mean += system.state().displacement[node] / static_cast<double>(nodes.size());
+  return mean.norm();
+}
+
+/// Names put together, each once.
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  for (const auto& name : b)
+    if (std::find(a.begin(), a.end(), name) == a.end()) a.push_back(name);
+  return a;
+}
+
+/// The published rule: equal load steps on the disturbed structure until one of them makes the motion grow
+/// too much.
+struct RuleResult {
+  Json path = Json::array();
+  double critical = 0;
+  std::string criterion;
+};
+
+RuleResult follow_rule(Context& context, const CollapseOptions& options,
+                       const std::vector<std::string>& loads, double linear) {
+  auto& system = context.system();
+  RuleResult result;
+  const auto nodes = system.model().nodes_of(options.monitor);
+  const auto rest = system.rest();
+  const auto acting = context.acting_loads;
+  context.acting_loads = joined(acting, options.disturbance);
+  std::string failure = come_to_rest(context);
+  const double start = watched_motion(system, nodes);
+  if (failure.empty()) result.path.push_back({{"lambda", 0.0}, {"monitor", start}});
+  double before = start;
+  for (int k = 1; failure.empty() && k * options.step <= options.last * (1 + 1e-12); ++k) {
+    const double lambda = k * options.step * linear;
+    system.begin_stage(boundary_with(context, loads, lambda));
+    const auto path = follow(context, fmt::format("load factor {:.4g}", lambda));
+    if (!path.reached) {
+      result.criterion = fmt::format("no equilibrium at load factor {:.5g}: {}", lambda, path.reason);
+      break;
+    }
+    const double now = watched_motion(system, nodes);
+    result.path.push_back({{"lambda", lambda}, {"monitor", now}});
+    // A motion that grows as the load does is no sign of anything.
+    if (k > 1 && now > before * std::max(options.growth, k / (k - 1.0))) {
+      result.criterion = fmt::format(
+          "the monitored displacement grows {:.4g} times, more than {:g}, in the next step of {:g} of "
+          "the linear value",
+          now / before, options.growth, options.step);
+      break;
+    }
+    result.critical = lambda;
+    before = now;
+  }
+  if (!failure.empty()) result.criterion = failure;
+  if (result.criterion.empty())
+    result.criterion =
+        fmt::format("no step up to {:g} of the linear value grows {:g} times", options.last, options.growth);
+  context.acting_loads = acting;
+  system.restore(rest);
+  return result;
+}
+
+/// The path of the undisturbed structure to its first critical point.
+Json follow_undisturbed(Context& context, const CollapseOptions& options,
+                        const std::vector<std::string>& loads, double linear, Json& entry) {
+  auto& system = context.system();
+  const auto rest = system.rest();
+  auto arc = options.arc_length;
+  arc.stop_at_critical = 1;
+  arc.load_factor = 2 * options.last;
+  system.begin_stage(boundary_with(context, loads, linear));
+  const auto path = follow_arc(context, "undisturbed", arc);
+  Json critical = critical_points_json(context, path, options.monitor);
+  for (auto& point : critical) {
+    point["lambda"] = to_digits(point["lambda"].get<double>() * linear, certain_digits);
+    const bool limit = point["kind"] == "limit";
+    entry[limit ? "limit_lambda" : "bifurcation_lambda"] = point["lambda"];
+  }
+  if (critical.empty()) entry["undisturbed"] = path.reason;
+  system.restore(rest);
+  return critical;
+}
+
+}  // namespace
+
+Json run_step(Context& context, const CollapseOptions& options) {
+  const auto loads = scaled_loads(context, options.loads, options.disturbance);
+  Json entry{{"status", "done"}};
+  const auto fail = [&](const std::string& reason) {
+    entry["status"] = "not_converged";
+    entry["reason"] = reason;
+    return entry;
+  };
+  if (const auto reason = come_to_rest(context); !reason.empty()) return fail(reason);
+  double linear = options.linear_factor.value_or(0);
+  if (!options.linear_factor) {
+    const auto found = linear_buckling(context, loads, 1, BucklingOptions::Sign::positive);
+    if (!found.failure.empty()) return fail(found.failure);
+    if (found.factors.empty())
+      return fail(
+          "no positive factor makes the structure buckle: give linear_factor, of which `step` is a part");
+    linear = to_digits(found.factors.front(), certain_digits);
+  }
+  entry["linear_lambda"] = linear;
+  const auto rule = follow_rule(context, options, loads, linear);
+  entry["critical_lambda"] = rule.critical;
+  entry["criterion"] = rule.criterion;
+  entry["path"] = rule.path;
+  entry["critical_points"] = follow_undisturbed(context, options, loads, linear, entry);
+  if (const double reference = reference_load(context, loads); reference > 0) {
+    entry["critical_load"] = rule.critical * reference;
+    entry["safety_factors"] = Json::array();
+    for (const double force : options.working_forces)
+      entry["safety_factors"].push_back(rule.critical * reference / force);
+  }
+  return entry;
+}
+
+}  // namespace tautline::steps

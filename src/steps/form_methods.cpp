@@ -1,0 +1,401 @@
+#include "steps/form_methods.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <tautline/core/error.hpp>
+#include <tautline/formfinding/constraints.hpp>
+#include <tautline/formfinding/dynamic_relaxation.hpp>
+#include <tautline/formfinding/force_density.hpp>
+#include <tautline/formfinding/minimal_film.hpp>
+
+namespace tautline::steps {
+
+namespace {
+
+using formfinding::ConstrainedNet;
+using formfinding::ConstraintKind;
+
+/// Tension asked of each branch by its group [N]; NaN: none.
+VecX target_tensions(const model::Model& structure, const FormNet& form) {
+  VecX target(form.cables.size());
+  for (std::size_t b = 0; b < form.cables.size(); ++b) {
+    const double tension = structure.groups[structure.cables[form.cables[b]].group].target_tension;
+    target[static_cast<int>(b)] = tension > 0 ? tension : std::nan("");
+  }
+  if (!(target.array() > 0).any())
+    throw ModelError(
+        fmt::format("form-finding: no group of the net states a tension; give one of {} a "
+                    "`tension`, or use `method: linear`",
+                    fmt::join(form.groups, ", ")));
+  return target;
+}
+
+/// Tension of each cable as drawn over its length [N/m]; `otherwise` where it has none.
+VecX drawn_force_density(const model::Model& structure, const FormNet& form, double otherwise) {
+  VecX q(form.cables.size());
+  for (std::size_t b = 0; b < form.cables.size(); ++b) {
+    const auto& cable = structure.cables[form.cables[b]];
+    const double drawn =
+        cable.initial_strain * form.stiffness(structure, b) / structure.reference_length(cable);
+    q[static_cast<int>(b)] = drawn != 0 ? drawn : otherwise;
+  }
+  return q;
+}
+
+VecX axial_stiffness(const model::Model& structure, const FormNet& form) {
+  VecX stiffness(form.cables.size());
+  for (std::size_t b = 0; b < form.cables.size(); ++b)
+    stiffness[static_cast<int>(b)] = form.stiffness(structure, b);
+  return stiffness;
+}
+
+/// What branches, loads and films leave at each node.
+/// @param[in] film_sides  force densities of the sides opposite to the corners; may be empty
+Points reactions(const FormNet& form, const Points& nodes, const VecX& tension,
+                 const Points& film_sides = {}) {
+  Points reaction(nodes.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < form.net.load.size(); ++i) reaction[i] = -form.net.load[i];
+  for (std::size_t b = 0; b < form.net.branches.size(); ++b) {
+    const auto& [i, j] = form.net.branches[b];
+    const Vec3 pull = tension[static_cast<int>(b)] * (nodes[j] - nodes[i]).normalized();
+    reaction[i] -= pull;
+    reaction[j] += pull;
+  }
+  for (std::size_t t = 0; t < film_sides.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int i = form.triangles[t][(k + 1) % 3], j = form.triangles[t][(k + 2) % 3];
+      const Vec3 pull = film_sides[t][k] * (nodes[j] - nodes[i]);
+      reaction[i] -= pull;
+      reaction[j] += pull;
+    }
+  return reaction;
+}
+
+/// What every method's answer has.
+template <class Found>
+Form begin(const Found& found) {
+  Form result;
+  result.converged = found.converged;
+  result.reason = found.reason;
+  result.nodes = found.nodes;
+  return result;
+}
+
+const char* name_of(formfinding::TensionMethod method) {
+  using enum formfinding::TensionMethod;
+  return method == position_newton ? "position_newton"
+         : method == fixed_point   ? "fixed_point"
+                                   : "smallest_norm";
+}
+
+Form find_by_tensions(const Context& context, const FormFindingOptions& options, const FormNet& form) {
+  formfinding::ForceDensityOptions solver;
+  solver.jacobian = options.jacobian;
+  solver.initial_force_density = options.initial_force_density;
+  solver.tolerance = options.tolerance.value_or(solver.tolerance);
+  solver.max_iterations = options.max_iterations.value_or(solver.max_iterations);
+  solver.estimate_condition = options.condition_number;
+  using enum formfinding::TensionMethod;
+  if (options.solver == FormSolver::smallest_norm) solver.method = step_of_smallest_norm;
+  if (options.solver == FormSolver::position_newton) solver.method = position_newton;
+  if (options.solver == FormSolver::fixed_point) solver.method = fixed_point;
+  // The published Jacobian is for the published iteration.
+  if (options.jacobian == formfinding::SurfaceJacobian::as_published) solver.method = step_of_smallest_norm;
+  const auto found = formfinding::find_tensions(
+      form.net, target_tensions(context.structure, form), form.surface, solver,
+      [&](int iteration, double residual) {
+        context.progress.update(
+            fmt::format("{} | iteration {}, residual {:.2e} N", context.step_name, iteration, residual));
+      });
+  Form result = begin(found);
+  result.tension = found.tension;
+  result.reaction = reactions(form, found.nodes, found.tension);
+  result.residual = found.constraint_residual;
+  result.residual_name = found.method == step_of_smallest_norm ? "largest tension error [N]"
+                                                               : "largest force out of balance [N]";
+  result.details = {{"solver", name_of(found.method)},
+                    {"iterations", found.iterations},
+                    {"constraint_residual", found.constraint_residual}};
+  result.details["coordinate_norm"] = Json::array();
+  for (const auto& n : found.coordinate_norm)
+    result.details["coordinate_norm"].push_back(Json::array({n.x(), n.y(), n.z()}));
+  result.details["step_relaxation"] = found.step_relaxation;
+  result.details["out_of_balance"] = found.out_of_balance;
+  if (found.condition_number > 0) result.details["condition_number"] = found.condition_number;
+  return result;
+}
+
+Form find_linear(const Context& context, const FormFindingOptions& options, const FormNet& form) {
+  const auto found = formfinding::find_linear_form(
+      form.net, drawn_force_density(context.structure, form, options.initial_force_density), form.surface);
+  Form result;
+  result.converged = true;
+  result.reason = "one linear solve";
+  result.warnings = found.warnings;
+  result.nodes = found.nodes;
+  result.tension = found.tension;
+  result.reaction = found.reaction;
+  result.details = {{"iterations", 1},
+                    {"constraint_residual", Json::array()},
+                    {"coordinate_norm", Json::array()},
+                    {"step_relaxation", Json::array()},
+                    {"out_of_balance", found.out_of_balance}};
+  if (found.negative_directions > 0) result.details["negative_directions"] = found.negative_directions;
+  return result;
+}
+
+std::string names_text(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+bool is_reaction(ConstraintKind kind) {
+  return kind >= ConstraintKind::reaction_x;
+}
+
+/// In a net found for tensions, groups that state a force density keep it.
+bool keeps_force_density(const Context& context, const FormFindingOptions& options,
+                         const std::string& group) {
+  return options.method == FormMethod::tension && context.deck.groups.at(group).force_density.has_value();
+}
+
+/// The demands of the deck, or of the groups' tensions where cloth stands beside method tension.
+std::vector<formfinding::Constraint> demands(const model::Model& structure, const FormFindingOptions& options,
+                                             const FormNet& form) {
+  std::vector<formfinding::Constraint> list;
+  for (const auto& wish : options.constraints)
+    list.push_back(
+        {wish.kind, names_text(wish.on),
+         is_reaction(wish.kind) ? form.nodes_of(structure, wish.on) : form.branches_of(structure, wish.on),
+         wish.value});
+  if (options.method != FormMethod::tension) return list;
+  const VecX target = target_tensions(structure, form);
+  for (const auto& group : form.groups) {
+    formfinding::Constraint tension{ConstraintKind::tension, group, form.branches_of(structure, {group}), {}};
+    if (tension.members.empty() || std::isnan(target[tension.members.front()])) continue;
+    tension.value = {target[tension.members.front()]};
+    list.push_back(std::move(tension));
+  }
+  return list;
+}
+
+void set_bounds(const model::Model& structure, const FormFindingOptions& options, const FormNet& form,
+                ConstrainedNet& problem) {
+  const auto n = static_cast<Eigen::Index>(form.cables.size());
+  for (const auto& bounds : options.bounds)
+    for (const int b : form.branches_of(structure, bounds.on)) {
+      if (bounds.min) {
+        if (problem.lower.size() == 0) problem.lower = VecX::Constant(n, std::nan(""));
+        problem.lower[b] = *bounds.min;
+      }
+      if (bounds.max) {
+        if (problem.upper.size() == 0) problem.upper = VecX::Constant(n, std::nan(""));
+        problem.upper[b] = *bounds.max;
+      }
+    }
+}
+
+formfinding::ConstrainedOptions constrained_options(const FormFindingOptions& options) {
+  formfinding::ConstrainedOptions solver;
+  solver.jacobian = options.jacobian;
+  solver.initial_force_density = options.initial_force_density;
+  solver.tolerance = options.tolerance.value_or(solver.tolerance);
+  solver.max_iterations = options.max_iterations.value_or(solver.max_iterations);
+  solver.estimate_condition = options.condition_number;
+  using enum formfinding::StepSolver;
+  if (options.solver == FormSolver::dense) solver.step_solver = dense;
+  if (options.solver == FormSolver::lsqr) solver.step_solver = lsqr;
+  if (options.solver == FormSolver::position_newton) solver.step_solver = position_newton;
+  return solver;
+}
+
+Json worst_json(const Context& context, const FormNet& form, const formfinding::ConstrainedResult& found) {
+  Json list = Json::array();
+  for (const auto& worst : found.worst) {
+    const bool node = is_reaction(worst.kind);
+    list.push_back(
+        {{"constraint", worst.constraint},
+         {"where", node ? fmt::format("node at ({:.4g}, {:.4g}, {:.4g})", found.nodes[worst.member].x(),
+                                      found.nodes[worst.member].y(), found.nodes[worst.member].z())
+                        : form.describe(context.structure, worst.member)},
+         {"wanted", worst.wanted},
+         {"found", worst.found}});
+  }
+  return list;
+}
+
+Form find_with_constraints(const Context& context, const FormFindingOptions& options, const FormNet& form) {
+  const auto& structure = context.structure;
+  ConstrainedNet problem{form.net,
+                         form.surface,
+                         demands(structure, options, form),
+                         drawn_force_density(structure, form, options.initial_force_density),
+                         std::vector<bool>(form.cables.size(), false),
+                         {},
+                         {},
+                         axial_stiffness(structure, form),
+                         form.triangles,
+                         form.surface_stress};
+  if (options.method == FormMethod::linear) problem.held.assign(form.cables.size(), true);
+  auto held = options.hold;
+  for (const auto& group : form.groups)
+    if (keeps_force_density(context, options, group)) held.push_back(group);
+  for (const int b : form.branches_of(structure, held)) problem.held[b] = true;
+  set_bounds(structure, options, form, problem);
+  const auto found = formfinding::find_form(problem, constrained_options(options));
+  Form result = begin(found);
+  result.warnings = found.warnings;
+  result.tension = found.tension;
+  result.reaction = found.reaction;
+  result.cloth_pull = found.cloth_force_density;
+  result.residual = found.residual;
+  result.residual_name = "largest scaled residual [-]";
+  result.details = {{"solver", found.method},
+                    {"iterations", found.iterations},
+                    {"constraint_residual", found.residual},
+                    {"step_relaxation", found.step_relaxation},
+                    {"out_of_balance", found.out_of_balance},
+                    {"constraints", found.n_rows}};
+  if (found.rank >= 0) result.details["rank"] = found.rank;
+  if (found.condition_number > 0) {
+    result.details["condition_number"] = found.condition_number;
+    result.details["condition_is_lower_bound"] = found.condition_is_estimate;
+  }
+  if (found.cloth_iterations > 0) result.details["cloth_iterations"] = found.cloth_iterations;
+  if (!found.worst.empty()) {
+    result.details["least_squares_optimum"] = found.least_squares_optimum;
+    result.details["worst"] = worst_json(context, form, found);
+  }
+  return result;
+}
+
+VecX unstressed_lengths(const model::Model& structure, const FormNet& form) {
+  VecX lengths(form.cables.size());
+  for (std::size_t b = 0; b < form.cables.size(); ++b)
+    lengths[static_cast<int>(b)] = structure.unstressed_length(structure.cables[form.cables[b]]);
+  return lengths;
+}
+
+std::vector<bool> bars(const model::Model& structure, const FormNet& form) {
+  std::vector<bool> bar;
+  for (const int cable : form.cables)
+    bar.push_back(structure.groups[structure.cables[cable].group].kind == model::ElementKind::bar);
+  return bar;
+}
+
+Form find_elastic(const Context& context, const FormFindingOptions& options, const FormNet& form) {
+  formfinding::ElasticOptions solver;
+  solver.tolerance = options.tolerance.value_or(solver.tolerance);
+  solver.max_iterations = options.max_iterations.value_or(solver.max_iterations);
+  const VecX lengths = unstressed_lengths(context.structure, form);
+  formfinding::ElasticNet net{form.net, axial_stiffness(context.structure, form), lengths};
+  net.carries_compression = bars(context.structure, form);
+  const auto found = formfinding::find_elastic_equilibrium(net, solver);
+  Form result = begin(found);
+  result.tension = found.tension;
+  result.unstressed_length = lengths;
+  result.reaction = reactions(form, found.nodes, found.tension);
+  result.residual = found.residual;
+  result.residual_name = "largest force out of balance [N]";
+  result.details = {{"iterations", found.iterations},
+                    {"force_residual", found.residual},
+                    {"out_of_balance", found.out_of_balance},
+                    {"slack", found.n_slack}};
+  return result;
+}
+
+Form relax(const Context& context, const FormFindingOptions& options, const FormNet& form) {
+  auto solver = options.relaxation;
+  solver.tolerance = options.tolerance.value_or(solver.tolerance);
+  solver.max_iterations = options.max_iterations.value_or(solver.max_iterations);
+  const auto& structure = context.structure;
+  formfinding::ElasticNet net{form.net,
+                              axial_stiffness(structure, form),
+                              unstressed_lengths(structure, form),
+                              VecX::Constant(static_cast<Eigen::Index>(form.cables.size()), std::nan("")),
+                              form.triangles,
+                              form.surface_stress};
+  net.carries_compression = bars(structure, form);
+  VecX lengths = net.unstressed_length;
+  const auto constant = form.branches_of(structure, options.constant_tension);
+  for (const int b : constant) {
+    const auto& cable = structure.cables[form.cables[b]];
+    net.tension[b] = cable.initial_strain * form.stiffness(structure, static_cast<std::size_t>(b));
+  }
+  const auto found = formfinding::relax(net, solver);
+  for (const int b : constant) {
+    const auto [i, j] = form.net.branches[b];
+    const double length = (found.nodes[j] - found.nodes[i]).norm();
+    lengths[b] = length / (1 + found.tension[b] / net.axial_stiffness[b]);
+  }
+  Form result = begin(found);
+  result.tension = found.tension;
+  result.unstressed_length = lengths;
+  result.film_sides = found.side_force_density;
+  result.reaction = reactions(form, found.nodes, found.tension, result.film_sides);
+  result.details = {{"iterations", found.iterations}, {"out_of_balance", found.out_of_balance}};
+  const bool viscous = solver.damping == formfinding::Damping::viscous;
+  if (viscous) result.details["pilot_iterations"] = found.pilot_iterations;
+  if (viscous) result.details["period"] = found.period;
+  if (!viscous) result.details["kinetic_peaks"] = found.n_peaks;
+  return result;
+}
+
+Form find_film(const Context& context, const FormFindingOptions& options, const FormNet& form) {
+  formfinding::MinimalFilmOptions solver;
+  solver.tolerance = options.tolerance.value_or(solver.tolerance);
+  solver.max_iterations = options.max_iterations.value_or(solver.max_iterations);
+  const auto& structure = context.structure;
+  VecX tension(form.cables.size());
+  for (std::size_t b = 0; b < form.cables.size(); ++b) {
+    const double target = structure.groups[structure.cables[form.cables[b]].group].target_tension;
+    tension[static_cast<int>(b)] = target > 0 ? target : std::nan("");
+  }
+  const auto found = formfinding::find_minimal_film(
+      {form.net, form.triangles, form.surface_stress, tension,
+       drawn_force_density(structure, form, options.initial_force_density)},
+      solver, [&](int iteration, double residual) {
+        context.progress.update(
+            fmt::format("{} | iteration {}, residual {:.2e} N", context.step_name, iteration, residual));
+      });
+  Form result = begin(found);
+  result.tension = found.cable_tension;
+  result.film_sides = found.side_force_density;
+  result.reaction = reactions(form, found.nodes, found.cable_tension, result.film_sides);
+  result.residual = found.residual;
+  result.residual_name = "largest force out of balance [N]";
+  result.details = {{"iterations", found.iterations},
+                    {"force_residual", found.residual},
+                    {"out_of_balance", found.out_of_balance},
+                    {"film_area", found.area}};
+  return result;
+}
+
+}  // namespace
+
+Form find_form(const Context& context, const FormFindingOptions& options, const FormNet& form) {
+  switch (options.method) {
+    case FormMethod::linear:
+      return form.triangles.empty() ? find_linear(context, options, form)
+                                    : find_with_constraints(context, options, form);
+    case FormMethod::constraints:
+      return find_with_constraints(context, options, form);
+    case FormMethod::elastic:
+      return find_elastic(context, options, form);
+    case FormMethod::dynamic_relaxation:
+      return relax(context, options, form);
+    case FormMethod::film:
+      return find_film(context, options, form);
+    case FormMethod::tension:
+      break;
+  }
+  const bool mixed = std::any_of(form.groups.begin(), form.groups.end(), [&](const std::string& group) {
+    return keeps_force_density(context, options, group);
+  });
+  return form.triangles.empty() && !mixed ? find_by_tensions(context, options, form)
+                                          : find_with_constraints(context, options, form);
+}
+
+}  // namespace tautline::steps

@@ -1,0 +1,40 @@
+#pragma once
+/// @file
+/// The part of a structure that form-finding works on, and the way back to the structure.
+
+#include <memory>
+#include <string>
+#include <tautline/formfinding/net.hpp>
+#include <vector>
+
+#include "steps/context.hpp"
+
+namespace tautline::steps {
+
+/// The net as stage 1 sees it. Branches are in the order of `groups` and within them of the structure.
+struct FormNet {
+  std::vector<std::string> groups;  ///< of cables
+  std::vector<std::string> cloth;   ///< of membranes
+  formfinding::Net net;
+  std::vector<int> cables;                    ///< structure cable of each branch
+  std::vector<int> nodes;                     ///< structure node of each net node
+  std::vector<int> local;                     ///< net node of each structure node, or -1
+  std::vector<int> membranes;                 ///< structure membrane of each triangle
+  std::vector<std::array<int, 3>> triangles;  ///< of the cloth; a quadrilateral is two
+  VecX surface_stress;                        ///< of each triangle [N/m]
+  std::unique_ptr<formfinding::Surface> own_surface;
+  const formfinding::Surface* surface = nullptr;  ///< the reflector's, or own_surface; or null
+
+  double stiffness(const model::Model& structure, std::size_t branch) const;
+  /// Branches of the named groups, in the order of the names. @throws ModelError for a group outside the net
+  std::vector<int> branches_of(const model::Model& structure, const std::vector<std::string>& names) const;
+  /// Net nodes of the named groups and selections. @throws ModelError for a node outside the net
+  std::vector<int> nodes_of(const model::Model& structure, const std::vector<std::string>& names) const;
+  /// "cable 3 of ridge, from (0, 0, 1) to (1, 0, 1)"
+  std::string describe(const model::Model& structure, int branch) const;
+};
+
+/// @throws ModelError where the options do not fit the structure
+FormNet extract_net(const Context& context, const FormFindingOptions& options);
+
+}  // namespace tautline::steps

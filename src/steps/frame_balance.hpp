@@ -1,0 +1,61 @@
+#pragma once
+/// @file
+/// A net between nodes of a frame that yields: both in balance.
+
+#include "steps/form_net.hpp"
+
+namespace tautline::steps {
+
+/// All that is not found by form-finding and does not hang on free nodes of the net: beams, shells, bars,
+/// springs, and cables with a state of their own.
+class Frame {
+ public:
+  /// @param[in] found        groups of cables and cloth whose state follows from form-finding
+  /// @param[in] precambered  the drawn shape is that under the net; the shape without stress is looked for
+  Frame(const Context& context, const FormNet& net, const std::vector<std::string>& found, bool precambered);
+
+  /// Where the structure's nodes are, or shall be, under the net [m].
+  Points positions() const;
+  double largest_displacement() const;
+  /// @brief Brings the frame to rest under the pull of the cables and cloth of `structure`, whose nodes are
+  /// at positions().
+  /// @return largest change of positions() [m]
+  /// @throws ModelError if the frame finds no equilibrium
+  double rest(const Context& context, const model::Model& structure);
+  /// @brief Puts the frame's nodes of a structure back to where they are without stress, with the way to
+  /// positions() as initial motion.
+  ///
+  /// Unstressed lengths stay, and the stress of cloth is such that it has its present value after the motion.
+  void unload(model::Model& structure) const;
+
+ private:
+  bool is_found(int group) const { return found_[static_cast<std::size_t>(group)]; }
+  /// Whether an element is neither found nor hangs on the net.
+  template <class Element>
+  bool is_frame(const Element& element) const {
+    return !is_found(element.group) &&
+           std::none_of(element.nodes.begin(), element.nodes.end(), [&](int node) { return free_[node]; });
+  }
+  model::Model loaded_frame(const model::Model& structure) const;
+  Points pull(const model::Model& structure) const;
+  /// The frame yields under dead forces.
+  double yield(const Context& context, const model::Model& structure);
+  /// @brief The shape without stress from which the frame comes to the drawn one.
+  ///
+  /// Position and forces being given, the stiffness without stress tells how the reference must change;
+  /// whether the frame could carry the pull without the net's stiffness does not matter.
+  double find_precamber(const model::Model& structure);
+  /// Displacement and rotation vector of every node on the way to the drawn shape.
+  void set_motion(const VecX& motion);
+  void orient(model::Model& structure) const;
+
+  Points drawn_;
+  Points reference_;  ///< without stress
+  bool precambered_;
+  std::vector<bool> found_;     ///< by group
+  std::vector<bool> free_;      ///< by node: a free node of the net
+  std::vector<bool> of_frame_;  ///< by node: an element of the frame meets it
+  model::InitialMotion motion_;
+};
+
+}  // namespace tautline::steps

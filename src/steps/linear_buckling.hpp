@@ -1,0 +1,40 @@
+#pragma once
+/// @file
+/// Linear buckling of the present state, for the steps that need it. Theory: docs/theory/buckling.md
+
+#include <string>
+#include <vector>
+
+#include <tautline/la/eigen_solver.hpp>
+
+#include "steps/context.hpp"
+
+namespace tautline::steps {
+
+/// Load factors nearest to zero, their modes and residuals; or why there are none.
+struct LinearBuckling {
+  std::vector<double> factors, residuals;
+  std::vector<la::Vector> modes;
+  std::string failure;  ///< empty if it worked
+};
+
+/// Names of loads that are scaled: those given, or all of the deck that do not act yet, except `but`.
+std::vector<std::string> scaled_loads(const Context& context,
+                                      const std::optional<std::vector<std::string>>& given,
+                                      const std::vector<std::string>& but = {});
+
+/// What is held and acts at present, with the loads named added once more, `factor` times.
+assembly::Boundary boundary_with(Context& context, const std::vector<std::string>& loads, double factor = 1);
+
+/// Sum of the sizes of the nodal forces named, or of the moments if there are no forces [N], [N m].
+double reference_load(const Context& context, const std::vector<std::string>& loads);
+
+/// Brings the system to rest under what acts at present. @return why it failed, or nothing
+std::string come_to_rest(Context& context);
+
+/// @brief Factors nearest to zero on the loads named, beside what acts at present, at which the tangent,
+/// linear in the factor, is singular. The system must be at rest and stays where it is.
+LinearBuckling linear_buckling(Context& context, const std::vector<std::string>& loads, int modes,
+                               BucklingOptions::Sign sign);
+
+}  // namespace tautline::steps

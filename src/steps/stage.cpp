@@ -1,0 +1,203 @@
+#include "steps/stage.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <tautline/analysis/relaxation.hpp>
+#include <tautline/analysis/stability.hpp>
+#include <tautline/assembly/mechanism.hpp>
+#include <tautline/core/error.hpp>
+#include <tautline/core/stopwatch.hpp>
+
+#include "steps/balance.hpp"
+#include "steps/path_results.hpp"
+#include "steps/summaries.hpp"
+
+namespace tautline::steps {
+
+namespace {
+
+/// Of each point the residuals and increments of its iterations.
+Json newton_table(const analysis::PathSummary& path) {
+  Json table = Json::array();
+  for (const auto& point : path.points) {
+    Json rows = Json::array();
+    for (const auto& [norms, increment, step] : point.newton.iterations) {
+      const double least = std::max(1e-10 * norms.reference_force, norms.rounding_force);
+      const double noise = norms.rounding_force > 1e-10 * norms.reference_force ? 1e-8 : 1e-12;
+      rows.push_back(
+          Json::array({rounded(above_rounding(without_rounding(norms.force, norms.rounding_force), least)),
+                       rounded(above_rounding(without_rounding(increment, noise), noise))}));
+    }
+    table.push_back({{"lambda", point.lambda}, {"force_and_increment", rows}});
+  }
+  return table;
+}
+
+/// Of each of the many points of a path followed by its length the number of iterations.
+Json iterations_table(const analysis::PathSummary& path) {
+  Json table = Json::array();
+  for (const auto& point : path.points)
+    table.push_back({{"lambda", point.lambda}, {"iterations", point.newton.newton_iterations()}});
+  return table;
+}
+
+}  // namespace
+
+StageRunner::StageRunner(Context& context, const EquilibriumOptions& options)
+    : context_(context), options_(options) {
+  if (!context.resume) return;
+  first_ = context.resume->stage;
+  entries_ = context.resume->entry;
+  way_ = context.resume->way;
+  critical_ = context.resume->critical;
+}
+
+Json StageRunner::entry_of(const StageOptions& stage, const assembly::OutOfBalance& start,
+                           const analysis::PathSummary& path, double seconds) const {
+  const bool walks = options_.control == Control::arc_length;
+  return {{"name", stage.name},
+          {"status", path.reached ? "done" : "not_converged"},
+          {"reason", path.reason},
+          {"newton_iterations", path.newton_iterations},
+          {"lambda_steps", path.points.size()},
+          {"failed_attempts", path.failed_attempts},
+          {"lambda", path.lambda()},
+          {"negative_pivots", path.inertia.negative},
+          {"null_pivots", path.inertia.null},
+          {"step0_out_of_balance", above_rounding(start.force, 1e-12)},
+          {"step0_out_of_balance_moment", above_rounding(start.moment, 1e-12)},
+          {"newton", walks ? iterations_table(path) : newton_table(path)},
+          {"wall_seconds", seconds}};
+}
+
+analysis::PathSummary StageRunner::walk(const std::string& what,
+                                        const std::function<void(const analysis::PathPoint&)>& converged) {
+  auto& system = context_.system();
+  auto arc = options_.arc_length;
+  arc.load_factor = options_.until.load_factor;
+  if (options_.until.least_load_factor) arc.least_load_factor = *options_.until.least_load_factor;
+  std::optional<analysis::Watch> watch;
+  if (options_.until.displacement) {
+    const auto nodes = system.model().nodes_of(options_.until.on);
+    const Vec3 direction = Vec3::Unit(static_cast<int>(options_.until.direction));
+    const auto mean = [&system, nodes, direction] {
+      double sum = 0;
+      for (const int node : nodes) sum += system.state().displacement[node].dot(direction);
+      return sum / static_cast<double>(nodes.size());
+    };
+    watch.emplace(analysis::Watch{system.mean_motion(nodes, direction), mean});
+    arc.displacement = options_.until.displacement;
+  }
+  return follow_arc(context_, what, arc, watch, converged);
+}
+
+void StageRunner::note(const analysis::PathPoint& point) {
+  const auto& system = context_.system();
+  const bool walks = options_.control == Control::arc_length;
+  if (options_.monitor.empty() && options_.increments == 1 && !walks) return;
+  way_.push_back({{"lambda", point.lambda},
+                  {"negative_directions", point.negative_directions},
+                  {"monitors", monitors_json(system, options_.monitor)},
+                  {"reactions", reactions_json(system, boundary_, system.reactions())}});
+}
+
+void StageRunner::save_point(Checkpoint& bookmark, bool always) {
+  bookmark.point->place = static_cast<const assembly::Place&>(*context_.system().keep());
+  bookmark.point->entry = entries_;
+  bookmark.point->way = way_;
+  bookmark.point->critical = critical_;
+  context_.checkpoints.save_point(bookmark, always);
+}
+
+analysis::PathSummary StageRunner::follow_stage(const StageOptions& stage, bool is_last,
+                                                Checkpoint& bookmark) {
+  const bool walks = is_last && options_.control == Control::arc_length;
+  double start = 0;
+  if (context_.resume) {
+    context_.system().return_to(context_.resume->place);
+    start = context_.resume->place.lambda;
+    context_.resume.reset();
+  }
+  const auto converged = [&](const analysis::PathPoint& point) {
+    if (is_last) note(point);
+    if (!walks && point.lambda < 1) save_point(bookmark, false);
+  };
+  if (walks) return walk(stage.name, converged);
+  return follow(context_, stage.name, is_last ? options_.increments : 1, converged, start);
+}
+
+Json StageRunner::relax_if_asked(const StageOptions& stage, analysis::PathSummary& path) {
+  if (path.reached || options_.fallback != Fallback::dynamic_relaxation ||
+      options_.control == Control::arc_length)
+    return nullptr;
+  auto& system = context_.system();
+  context_.progress.say(fmt::format("{} | {}: Newton's method gave up at lambda = {:.4g}; dynamic relaxation",
+                                    context_.step_name, stage.name, path.lambda()));
+  system.commit();
+  system.set_lambda(1);
+  const auto relaxed = analysis::relax(system, context_.workspace(), {}, [&](int step, double residual) {
+    context_.progress.update(fmt::format("{} | {}: dynamic relaxation, step {}, residual {:.1e}",
+                                         context_.step_name, stage.name, step, residual));
+  });
+  auto polish = context_.deck.solver;
+  polish.max_iterations = std::max(polish.max_iterations, analysis::NewtonOptions{}.max_iterations);
+  auto newton = analysis::solve_newton(system, context_.workspace(), polish);
+  Json told{{"gave_up", path.reason},
+            {"steps", relaxed.steps},
+            {"peaks", relaxed.peaks},
+            {"residual", rounded(relaxed.residual)},
+            {"newton_iterations", newton.newton_iterations()}};
+  path.newton_iterations += newton.newton_iterations();
+  if (!newton.converged()) {
+    path.reason += fmt::format(
+        "; dynamic relaxation then came to {:.1e} of the reference force in {} steps, from where {}",
+        relaxed.residual, relaxed.steps, newton.reason);
+    system.roll_back();
+    system.set_lambda(path.lambda());
+    return told;
+  }
+  system.commit();
+  path.reached = true;
+  path.reason = fmt::format("reached by dynamic relaxation in {} steps and {} Newton iterations",
+                            relaxed.steps, newton.newton_iterations());
+  analysis::count_negative(system, context_.workspace());
+  path.inertia = context_.workspace().solver.inertia();
+  path.points.push_back({1, std::move(newton), path.inertia.negative});
+  return told;
+}
+
+bool StageRunner::run(const StageOptions& stage, const std::vector<std::string>& loads, bool is_last) {
+  auto& system = context_.system();
+  double seconds = 0;
+  auto watch = std::make_optional<Stopwatch>(seconds);
+  const bool anew = context_.resume.has_value();
+  if (anew) system.restore(context_.resume->start);
+  context_.acting_loads = loads;
+  boundary_ = context_.boundary(stage.hold, true);
+  Checkpoint bookmark = context_.checkpoints.latest();
+  bookmark.point.emplace();
+  bookmark.point->stage = static_cast<int>(entries_.size());
+  bookmark.point->start = system.rest();
+  const auto start = system.begin_stage(boundary_);
+  context_.progress.say(fmt::format("{} | {}: out-of-balance at the start {:.3e} N", context_.step_name,
+                                    stage.name, start.force));
+  if (!anew && !entries_.empty()) save_point(bookmark, true);
+  auto path = follow_stage(stage, is_last, bookmark);
+  const Json relaxation = relax_if_asked(stage, path);
+  watch.reset();
+  for (auto& point : critical_points_json(context_, path, options_.monitor)) {
+    point["stage"] = stage.name;
+    critical_.push_back(point);
+  }
+  if ((!path.reached && path.points.empty()) || path.inertia.null > 0)
+    if (const auto mechanism = assembly::find_mechanism(system, context_.workspace()))
+      throw ModelError(fmt::format("stage \"{}\": {}", stage.name, mechanism->text));
+  entries_.push_back(entry_of(stage, start, path, seconds));
+  if (!relaxation.is_null()) entries_.back()["dynamic_relaxation"] = relaxation;
+  return path.reached;
+}
+
+}  // namespace tautline::steps

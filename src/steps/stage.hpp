@@ -1,0 +1,45 @@
+#pragma once
+/// @file
+/// The stages of an equilibrium: each is followed, recorded and kept for a restart.
+
+#include <string>
+#include <vector>
+
+#include "steps/context.hpp"
+
+namespace tautline::steps {
+
+/// Runs the stages of one step and records what they leave.
+class StageRunner {
+ public:
+  StageRunner(Context& context, const EquilibriumOptions& options);
+
+  /// Follows a stage to its end under `loads` (none if empty). `is_last`: the one whose path is reported.
+  /// @return whether it came to its end. @throws ModelError for a mechanism
+  bool run(const StageOptions& stage, const std::vector<std::string>& loads, bool is_last);
+  /// Index of the stage in which the step is taken up again, or 0; the stages before are recorded.
+  int first() const { return first_; }
+
+  const Json& entries() const { return entries_; }
+  const Json& way() const { return way_; }
+  const Json& critical() const { return critical_; }
+  const assembly::Boundary& boundary() const { return boundary_; }
+
+ private:
+  analysis::PathSummary follow_stage(const StageOptions& stage, bool is_last, Checkpoint& bookmark);
+  analysis::PathSummary walk(const std::string& what,
+                             const std::function<void(const analysis::PathPoint&)>& converged);
+  void note(const analysis::PathPoint& point);
+  void save_point(Checkpoint& bookmark, bool always);
+  Json relax_if_asked(const StageOptions& stage, analysis::PathSummary& path);
+  Json entry_of(const StageOptions& stage, const assembly::OutOfBalance& start,
+                const analysis::PathSummary& path, double seconds) const;
+
+  Context& context_;
+  const EquilibriumOptions& options_;
+  Json entries_ = Json::array(), way_ = Json::array(), critical_ = Json::array();
+  assembly::Boundary boundary_;
+  int first_ = 0;
+};
+
+}  // namespace tautline::steps

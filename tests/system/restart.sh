@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# restart.sh [LAUNCHER...]: a run that was killed goes on from its checkpoints to the same numbers, on as many ranks or fewer; a deck
+# of which only later steps differ takes up what is done; another structure is refused.
+. "$(dirname "$0")/common.sh"
+
+deck=$SOURCE/inputs/frame.yaml
+whole=$WORK/whole broken=$WORK/broken resumed=$WORK/resumed
+signal=KILL
+[ $# -eq 0 ] || signal=TERM     # mpirun passes it on to its processes
+options=(--quiet --no-pictures --set 'steps.vertical and side.increments=400')
+expect 0 "$TAUTLINE" run "$deck" -o "$whole" "${options[@]}"
+
+"$@" "$TAUTLINE" run "$deck" -o "$broken" "${options[@]}" >"$WORK/out" 2>"$WORK/err" &
+pid=$!
+for _ in $(seq 600); do
+  [ ! -s "$broken/checkpoints/point.bin" ] || break
+  sleep 0.02
+done
+kill -"$signal" "$pid" 2>/dev/null || true
+wait "$pid" 2>/dev/null || true
+has "$broken/checkpoints/step_2.bin"
+
+expect 0 "$TAUTLINE" run "$deck" -o "$resumed" --from "$broken" "${options[@]}"
+valid "$resumed" done
+says "$resumed/results.json" '"resumed"'
+# Displacements to 1e-10 of the largest.
+paste -d, "$whole/nodes.csv" "$resumed/nodes.csv" | awk -F, '
+  NR == 1 { n = NF / 2; next }
+  { for (i = 2; i <= n; ++i) if ($i + 0 == $i) { d = $i - $(i + n); if (d < 0) d = -d; if (d > worst) worst = d
+      u = $i < 0 ? -$i : $i; if (i >= 9 && u > most) most = u } }
+  END { exit !(worst <= 1e-10 * most + 1e-15) }' || fail "the resumed run came to other displacements"
+
+expect 0 "$TAUTLINE" run "$deck" -o "$WORK/more" --from "$whole" "${options[@]}" --set steps.modal.modes=6
+says "$WORK/more/results.json" '"steps": 3'
+expect 2 "$TAUTLINE" run "$deck" -o "$WORK/other" --from "$whole" --quiet --set parameters.side=2000
+says "$WORK/err" 'another structure'
+expect 5 "$TAUTLINE" run "$deck" -o "$WORK/other" --from "$WORK/nowhere" --quiet
+says "$WORK/err" 'no checkpoints'
+done_testing
