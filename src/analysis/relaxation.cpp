@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <tautline/core/error.hpp>
@@ -71,7 +72,9 @@ class Motion {
 
   double residual() const {
     const auto norms = problem_.norms(force_);
-    return std::max(share(norms.force, norms.reference_force), share(norms.moment, norms.reference_moment));
+    const double left =
+        std::max(share(norms.force, norms.reference_force), share(norms.moment, norms.reference_moment));
+    return std::isfinite(force_.norm()) ? left : std::numeric_limits<double>::infinity();  // ran away
   }
 
  private:

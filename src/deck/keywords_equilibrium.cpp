@@ -114,6 +114,43 @@ const BlockSet& until_blocks() {
   return set;
 }
 
+const BlockSet& scatter_blocks() {
+  static const BlockSet set = [] {
+    BlockBuilder<ScatterOptions> b("steps.equilibrium.scatter", "",
+                                   "Random displacements of a net at the start of the step, to see whether "
+                                   "the equilibrium depends on where the search begins.");
+    b.key("position", &ScatterOptions::position)
+        .in("m")
+        .at_least(0)
+        .says(
+            "Each coordinate of each free node of the structure that no beam or shell holds is displaced by "
+            "a random "
+            "amount up to this one, either way, and the mesh with it; unstressed lengths stay.");
+    b.key("seed", &ScatterOptions::seed).at_least(0).says("Another seed gives other displacements.");
+    return BlockSet{
+        "steps.equilibrium.scatter", "A start that is not quite where it should be.", {b.take()}, {}};
+  }();
+  return set;
+}
+
+const BlockSet& imperfection_blocks() {
+  static const BlockSet set = [] {
+    BlockBuilder<ImperfectionOptions> b(
+        "steps.collapse.imperfection", "",
+        "A shape without stress that is a little wrong, in the form of a mode of linear buckling.");
+    b.key("mode", &ImperfectionOptions::mode)
+        .at_least(1)
+        .says("Number of the mode, by positive factors, the least first.");
+    b.key("amplitude", &ImperfectionOptions::amplitude)
+        .in("m")
+        .says(
+            "Displacement of the node that is displaced most. The mode's largest component is positive; a "
+            "negative amplitude is the other side.");
+    return BlockSet{"steps.collapse.imperfection", "A structure that is not quite straight.", {b.take()}, {}};
+  }();
+  return set;
+}
+
 void check_equilibrium(Reader& reader, const Node& node, EquilibriumOptions& options) {
   if (options.release == Release::automatic) {
     if (const Node* value = node.find("stages"))
@@ -178,6 +215,8 @@ Block equilibrium_block() {
            std::vector<std::pair<std::string, Fallback>>{
                {"none", Fallback::none}, {"dynamic_relaxation", Fallback::dynamic_relaxation}})
       .says("What is tried where Newton's method gives up; Newton's method then polishes what was found.");
+  b.block("scatter", &Options::scatter, scatter_blocks())
+      .says("Random displacements of the free nodes of nets and films at the start of the step.");
   b.check(check_equilibrium);
   return b.take();
 }
@@ -212,6 +251,8 @@ Block collapse_block() {
   b.key("disturbance", &Options::disturbance)
       .refers("load")
       .says("Loads that act in full while the others grow step by step, e.g. a lateral force of 1 N.");
+  b.block("imperfection", &Options::imperfection, imperfection_blocks())
+      .says("Shape of the structure that is followed step by step, in place of or beside a disturbance.");
   b.key("monitor", &Options::monitor)
       .refers("group")
       .required()

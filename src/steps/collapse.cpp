@@ -6,7 +6,9 @@
 #include <tautline/core/error.hpp>
 
 #include "steps/context.hpp"
+#include "steps/imperfection.hpp"
 #include "steps/linear_buckling.hpp"
+#include "steps/mode_shapes.hpp"
 #include "steps/path_results.hpp"
 #include "steps/summaries.hpp"
 
@@ -16,11 +18,16 @@ namespace {
 
 constexpr int certain_digits = 7;
 
-/// Length of the mean displacement of what is watched, from where the disturbance left it or from the start
-/// [m].
-double watched_motion(const assembly::System& system, const std::vector<int>& nodes) {
+/// Length of the mean displacement of what is watched from its place in the perfect structure: that of an
+/// imperfection, if any, and the motion [m].
+double watched_motion(const assembly::System& system, const std::vector<int>& nodes,
+                      const Points& imperfection) {
   Vec3 mean = Vec3::Zero();
-  for (const int node : nodes) mean += system.state().displacement[node] / static_cast<double>(nodes.size());
+  for (const int node : nodes) {
+    const auto i = static_cast<std::size_t>(node);
+    mean += system.state().displacement[i] / static_cast<double>(nodes.size());
+    if (!imperfection.empty()) mean += imperfection[i] / static_cast<double>(nodes.size());
+  }
   return mean.norm();
 }
 
@@ -40,7 +47,8 @@ struct RuleResult {
 };
 
 RuleResult follow_rule(Context& context, const CollapseOptions& options,
-                       const std::vector<std::string>& loads, double linear) {
+                       const std::vector<std::string>& loads, double linear,
+                       const Points& imperfection = {}) {
   auto& system = context.system();
   RuleResult result;
   const auto nodes = system.model().nodes_of(options.monitor);
@@ -48,7 +56,7 @@ RuleResult follow_rule(Context& context, const CollapseOptions& options,
   const auto acting = context.acting_loads;
   context.acting_loads = joined(acting, options.disturbance);
   std::string failure = come_to_rest(context);
-  const double start = watched_motion(system, nodes);
+  const double start = watched_motion(system, nodes, imperfection);
   if (failure.empty()) result.path.push_back({{"lambda", 0.0}, {"monitor", start}});
   double before = start;
   for (int k = 1; failure.empty() && k * options.step <= options.last * (1 + 1e-12); ++k) {
@@ -59,7 +67,7 @@ RuleResult follow_rule(Context& context, const CollapseOptions& options,
       result.criterion = fmt::format("no equilibrium at load factor {:.5g}: {}", lambda, path.reason);
       break;
     }
-    const double now = watched_motion(system, nodes);
+    const double now = watched_motion(system, nodes, imperfection);
     result.path.push_back({{"lambda", lambda}, {"monitor", now}});
     // A motion that grows as the load does is no sign of anything.
     if (k > 1 && now > before * std::max(options.growth, k / (k - 1.0))) {
@@ -78,6 +86,20 @@ RuleResult follow_rule(Context& context, const CollapseOptions& options,
         fmt::format("no step up to {:g} of the linear value grows {:g} times", options.last, options.growth);
   context.acting_loads = acting;
   system.restore(rest);
+  return result;
+}
+
+/// The published rule on the structure with its nodes displaced by `shape` before it is loaded; afterwards
+/// the perfect one is back where it was.
+RuleResult follow_imperfect(Context& context, const CollapseOptions& options,
+                            const std::vector<std::string>& loads, double linear, const Points& shape) {
+  const model::Model perfect = context.system().model();
+  const auto rest = context.system().rest();
+  context.set_system(made_imperfect(perfect, shape));
+  context.system().restore(rest);
+  auto result = follow_rule(context, options, loads, linear, shape);
+  context.set_system(perfect);
+  context.system().restore(rest);
   return result;
 }
 
@@ -102,6 +124,15 @@ Json follow_undisturbed(Context& context, const CollapseOptions& options,
   return critical;
 }
 
+std::string too_few_modes(const LinearBuckling& found, const CollapseOptions& options) {
+  if (found.factors.empty())
+    return "no positive factor makes the structure buckle: give linear_factor, of which `step` is a part, "
+           "and no "
+           "imperfection";
+  return fmt::format("the imperfection asks for mode {}, but linear buckling has only {} positive factor{}",
+                     options.imperfection.mode, found.factors.size(), found.factors.size() == 1 ? "" : "s");
+}
+
 }  // namespace
 
 Json run_step(Context& context, const CollapseOptions& options) {
@@ -113,17 +144,23 @@ Json run_step(Context& context, const CollapseOptions& options) {
     return entry;
   };
   if (const auto reason = come_to_rest(context); !reason.empty()) return fail(reason);
+  const auto& [mode, amplitude] = options.imperfection;
   double linear = options.linear_factor.value_or(0);
-  if (!options.linear_factor) {
-    const auto found = linear_buckling(context, loads, 1, BucklingOptions::Sign::positive);
+  Points shape;  // of the imperfection
+  if (!options.linear_factor || amplitude != 0) {
+    const int modes = amplitude != 0 ? mode : 1;
+    const auto found = linear_buckling(context, loads, modes, BucklingOptions::Sign::positive);
     if (!found.failure.empty()) return fail(found.failure);
-    if (found.factors.empty())
-      return fail(
-          "no positive factor makes the structure buckle: give linear_factor, of which `step` is a part");
-    linear = to_digits(found.factors.front(), certain_digits);
+    if (static_cast<int>(found.factors.size()) < modes) return fail(too_few_modes(found, options));
+    if (!options.linear_factor) linear = to_digits(found.factors.front(), certain_digits);
+    if (amplitude != 0) {
+      shape = display_shape(context.system(), found.modes[static_cast<std::size_t>(mode - 1)]);
+      for (Vec3& v : shape) v *= amplitude;
+    }
   }
   entry["linear_lambda"] = linear;
-  const auto rule = follow_rule(context, options, loads, linear);
+  const auto rule = shape.empty() ? follow_rule(context, options, loads, linear)
+                                  : follow_imperfect(context, options, loads, linear, shape);
   entry["critical_lambda"] = rule.critical;
   entry["criterion"] = rule.criterion;
   entry["path"] = rule.path;

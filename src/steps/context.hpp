@@ -32,6 +32,7 @@ class Context {
   const deck::Deck& deck;
   Progress& progress;
   model::Model structure;  ///< as described; after form-finding, as found; of an umbrella, by rod_shaping
+  model::SubdivideOptions subdivide;             ///< by which the system's mesh was made of `structure`
   std::optional<reflector::Paraboloid> surface;  ///< of a reflector
   std::optional<rod::Umbrella> umbrella;         ///< of a rod-umbrella
   std::vector<output::Curve> rod_shapes;         ///< of the rod_shaping steps so far, for pictures

@@ -9,6 +9,7 @@
 #include "steps/path_results.hpp"
 #include "steps/release.hpp"
 #include "steps/rod_structure.hpp"
+#include "steps/scatter.hpp"
 #include "steps/stage.hpp"
 #include "steps/summaries.hpp"
 
@@ -76,6 +77,7 @@ void follow_parts(Context& context, const EquilibriumOptions& options, StageRunn
 Json run_step(Context& context, const EquilibriumOptions& options) {
   auto& system = context.system();
   if (options.reset && !context.resume) system.reset();
+  if (!context.resume) scatter(context, options.scatter);
   Json entry;
   entry["status"] = "done";
   StageRunner runner(context, options);

@@ -166,6 +166,7 @@ void hand_over(Context& context, const FormFindingOptions& options, const FormNe
 
 /// The finite-element system in the state found, for tables, pictures and the step that follows.
 void show(Context& context) {
+  context.subdivide = {};
   context.set_system(context.structure);
   auto& system = context.system();
   system.begin_stage(context.boundary({}, false));

@@ -6,6 +6,7 @@
 namespace tautline::steps {
 
 Json run_step(Context& context, const MeshOptions& options) {
+  context.subdivide = options.subdivide;
   context.set_system(model::subdivide(context.described(), options.subdivide));
   const auto& system = context.system();
   Json entry = model_json(system.model(), system.n_dofs());

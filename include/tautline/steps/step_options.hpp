@@ -51,6 +51,12 @@ enum class Release { as_given, automatic };
 /// What is tried where Newton's method fails.
 enum class Fallback { none, dynamic_relaxation };
 
+/// Random displacements of the free nodes at the start.
+struct ScatterOptions {
+  double position = 0;  ///< largest, in each coordinate [m]
+  int seed = 1;
+};
+
 /// `kind: equilibrium`
 struct EquilibriumOptions {
   std::vector<StageOptions> stages;  ///< empty: one stage with the supports only
@@ -64,6 +70,7 @@ struct EquilibriumOptions {
   UntilOptions until;
   Release release = Release::as_given;
   Fallback fallback = Fallback::none;
+  ScatterOptions scatter;
 };
 
 /// `kind: buckling`
@@ -74,10 +81,17 @@ struct BucklingOptions {
   enum class Sign { both, positive, negative } sign = Sign::both;
 };
 
+/// A shape made wrong, in the form of a mode of linear buckling.
+struct ImperfectionOptions {
+  int mode = 1;          ///< by its positive factor, the least first
+  double amplitude = 0;  ///< largest displacement of a node; negative: to the other side [m]
+};
+
 /// `kind: collapse`
 struct CollapseOptions {
   std::optional<std::vector<std::string>> loads;  ///< as in BucklingOptions, without `disturbance`
   std::vector<std::string> disturbance;           ///< loads that act in full from the start
+  ImperfectionOptions imperfection;               ///< of the structure that the rule follows
   std::vector<std::string> monitor;               ///< whose motion tells
   double step = 0.05;                             ///< over the linear buckling load [-]
   double growth = 1.5;                            ///< of the monitored displacement in one step
