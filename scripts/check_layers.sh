@@ -20,7 +20,7 @@ function library(name) {
   if (name ~ /^CLI\//) return "CLI11"
   if (name ~ /^yaml-cpp\//) return "yaml-cpp"
   if (name ~ /^nlohmann\//) return "nlohmann-json"
-  if (name ~ /^(Eigen|fmt|sys)\// || name ~ /^[a-z_0-9]+$/ || name ~ /^(dlfcn|unistd)\.h$/) return ""
+  if (name ~ /^(Eigen|fmt|sys)\// || name ~ /^[a-z_0-9]+$/ || name ~ /^(dlfcn|fcntl|spawn|unistd)\.h$/) return ""
   return name
 }
 

@@ -25,7 +25,8 @@ Increment copy_of(const Increment& other) {
 class Walk {
  public:
   Walk(PathProblem& problem, Workspace& workspace, const NewtonOptions& newton,
-       const ArcLengthOptions& options, const std::optional<Watch>& watch, const PathCallback& callback)
+       const ArcLengthOptions& options, const std::optional<Watch>& watch, const PathCallback& callback,
+       const PathStart& start)
       : problem_(problem),
         workspace_(workspace),
         newton_(newton),
@@ -33,17 +34,18 @@ class Walk {
         watch_(watch),
         callback_(callback),
         weights_(problem.layout()),
-        last_{la::Vector(problem.layout()), 1},
-        tangent_{la::Vector(problem.layout()), 1} {}
+        tangent_{la::Vector(problem.layout()), 1},
+        start_(start),
+        lambda_(start.lambda) {}
 
   PathSummary run() {
     problem_.weights(options_.rotation_weight, weights_);
-    problem_.set_lambda(0);
+    problem_.set_lambda(lambda_);
     problem_.commit();
     here_ = problem_.keep();
     if (watch_) watched_ = watch_->measure();
     try {
-      if (begin())
+      if (start_.arc ? go_on(*start_.arc) : begin())
         while (!ended_) advance();
     } catch (...) {
       problem_.return_to(*here_);
@@ -111,13 +113,30 @@ class Walk {
     return true;
   }
 
+  bool go_on(const ArcPlace& place) {
+    psi2_ = place.lambda_weight;
+    length_ = place.length;
+    first_length_ = place.first_length;
+    bifurcations_ = place.bifurcations;
+    direction_ = place.direction;
+    if (find_tangent()) return true;
+    end(false, "the tangent stiffness is singular at the point kept: " + workspace_.solver.failure());
+    return false;
+  }
+
+  int points() const {
+    return (start_.arc ? start_.arc->points : 0) + static_cast<int>(summary_.points.size());
+  }
+  int critical_points() const {
+    return (start_.arc ? start_.arc->critical : 0) + static_cast<int>(summary_.critical.size());
+  }
+
   /// The first guess of a step of this length from the present point, in the direction of travel.
   Increment guess(double length) const {
     Increment step = copy_of(tangent_);
-    const double scale = length / std::sqrt(size_squared(tangent_));
-    const double sign = along(tangent_, last_) < 0 || (first_ && last_.lambda < 0) ? -1 : 1;
-    step.x.scale(sign * scale);
-    step.lambda *= sign * scale;
+    const double scale = direction_ * length / std::sqrt(size_squared(tangent_));
+    step.x.scale(scale);
+    step.lambda *= scale;
     return step;
   }
 
@@ -144,25 +163,23 @@ class Walk {
   }
 
   void advance() {
-    if (static_cast<int>(summary_.points.size()) >= options_.max_points)
-      return end(true,
-                 fmt::format("{} points were found, as many as max_points allows", summary_.points.size()));
-    Increment step = copy_of(last_);
+    if (points() >= options_.max_points)
+      return end(true, fmt::format("{} points were found, as many as max_points allows", points()));
+    Increment step = copy_of(tangent_);
     auto newton = step_of(length_, step);
     const bool landed = newton.converged() && land(step, newton);
     if (!newton.converged()) return shorten(newton);
     const int before = negative_;
     const auto from = here_;
     const double length = std::sqrt(size_squared(step)), lambda_from = lambda_;
-    const Increment tangent_from = copy_of(tangent_), last_from = copy_of(last_);
-    const bool was_first = first_;
+    const Increment tangent_from = copy_of(tangent_);
+    const int direction_from = direction_;
     arrive(step);
-    if (negative_ != before &&
-        left_between(from, lambda_from, tangent_from, last_from, was_first, length, before))
+    if (negative_ != before && left_between(from, lambda_from, tangent_from, direction_from, length, before))
       return;
-    note(newton);
-    if (landed) return end(true, landing_);
     adapt(newton);
+    note(newton);
+    if (landed) end(true, landing_);
   }
 
   void shorten(const NewtonSummary& newton) {
@@ -173,7 +190,7 @@ class Walk {
     if (length_ < options_.smallest_step * first_length_)
       end(false, fmt::format("stopped at lambda = {:.6g} after {} points: the step fell below {:.0e} of the "
                              "first; the last attempt failed because {}",
-                             lambda_, summary_.points.size(), options_.smallest_step, newton.reason));
+                             lambda_, points(), options_.smallest_step, newton.reason));
   }
 
   void adapt(const NewtonSummary& newton) {
@@ -191,7 +208,7 @@ class Walk {
       if ((lambda_ - end) * (lambda - end) > 0 || lambda_ == end) continue;
       const double part = (end - lambda_) / step.lambda;
       if (!step_anew(step, newton, PlaneCondition(c, 1, end - lambda_), part)) return false;
-      landing_ = fmt::format("lambda = {:.6g} reached after {} points", end, summary_.points.size() + 1);
+      landing_ = fmt::format("lambda = {:.6g} reached after {} points", end, points() + 1);
       return true;
     }
     if (!watch_ || !options_.displacement) return false;
@@ -199,7 +216,7 @@ class Walk {
     if (left * (left - way) > 0 || left == 0) return false;
     if (!step_anew(step, newton, PlaneCondition(watch_->c, 0, left), left / way)) return false;
     landing_ = fmt::format("the displacement {:.6g} m was reached at lambda = {:.6g} after {} points",
-                           *options_.displacement, lambda_ + step.lambda, summary_.points.size() + 1);
+                           *options_.displacement, lambda_ + step.lambda, points() + 1);
     return true;
   }
 
@@ -226,38 +243,37 @@ class Walk {
     if (watch_) watched_ = watch_->measure();
     problem_.commit();
     here_ = problem_.keep();
-    last_ = copy_of(step);
-    first_ = false;
     find_tangent();
+    direction_ = along(tangent_, step) < 0 ? -1 : 1;
   }
 
   void note(const NewtonSummary& newton) {
-    summary_.points.push_back({lambda_, newton, negative_});
+    const ArcPlace place{length_,      first_length_,     psi2_,        direction_,
+                         points() + 1, critical_points(), bifurcations_};
+    summary_.points.push_back({lambda_, newton, negative_, place});
     if (callback_.converged) callback_.converged(summary_.points.back());
   }
 
   /// Finds every critical point of the last step; leaves the problem where it was, or on a branch, or at the
   /// point the path was asked to stop at. @return whether the path was left
   bool left_between(const std::shared_ptr<const PathProblem::Kept>& from, double lambda_from,
-                    const Increment& tangent_from, const Increment& last_from, bool was_first, double length,
-                    int before) {
+                    const Increment& tangent_from, int direction_from, double length, int before) {
     const auto there = here_;
-    const Increment tangent_there = copy_of(tangent_), last_there = copy_of(last_);
+    const Increment tangent_there = copy_of(tangent_);
     const double lambda_there = lambda_;
-    const int after = negative_;
+    const int after = negative_, direction_there = direction_;
     const auto stand_before = [&] {
       here_ = from;
       lambda_ = lambda_from;
       tangent_ = copy_of(tangent_from);
-      last_ = copy_of(last_from);
-      first_ = was_first;
+      direction_ = direction_from;
     };
     Workspace search{workspace_.tangent.shifted(0), la::DirectSolver()};  // what it does is not counted
     active_ = &search;
     double start = 0;
     for (int round = 0, negative = before; round < 4 && negative != after && start < 1; ++round) {
       stand_before();
-      Increment step = copy_of(last_from);
+      Increment step = copy_of(tangent_from);
       const auto go = [&](double t) -> std::optional<double> {
         const double part = start + t * (1 - start);
         if (!step_of(part * length, step).converged()) return std::nullopt;
@@ -273,6 +289,7 @@ class Walk {
       start += behind * (1 - start);
       negative = found->negative_after;
       summary_.critical.push_back(std::move(*found));
+      if (callback_.critical) callback_.critical(summary_.critical.back());
       active_ = &workspace_;
       if (leave_at(summary_.critical.back())) return true;
       active_ = &search;
@@ -281,20 +298,19 @@ class Walk {
     here_ = there;
     lambda_ = lambda_there;
     tangent_ = copy_of(tangent_there);
-    last_ = copy_of(last_there);
+    direction_ = direction_there;
     negative_ = after;
-    first_ = false;
     problem_.return_to(*there);
     return false;
   }
 
   /// At a critical point: whether the path ends here or turns onto a branch.
   bool leave_at(const CriticalPoint& point) {
-    if (static_cast<int>(summary_.critical.size()) == options_.stop_at_critical) {
+    if (critical_points() == options_.stop_at_critical) {
       stand_at(point);
       note({NewtonStatus::converged, "critical point", {}});
-      end(true, fmt::format("stopped at critical point {}, lambda = {:.6g}", summary_.critical.size(),
-                            point.lambda));
+      end(true,
+          fmt::format("stopped at critical point {}, lambda = {:.6g}", critical_points(), point.lambda));
       return true;
     }
     if (point.kind != CriticalPoint::Kind::bifurcation || ++bifurcations_ != options_.branch) return false;
@@ -347,11 +363,13 @@ class Walk {
   const PathCallback& callback_;
   PathSummary summary_;
   la::Vector weights_;
-  Increment last_, tangent_;  // the last step; the direction of the path for a unit of lambda
+  Increment tangent_;  // the direction of the path for a unit of lambda
+  const PathStart& start_;
   std::shared_ptr<const PathProblem::Kept> here_;
-  double lambda_ = 0, psi2_ = 0, length_ = 0, first_length_ = 0, watched_ = 0;
+  double lambda_, psi2_ = 0, length_ = 0, first_length_ = 0, watched_ = 0;
   int negative_ = 0, bifurcations_ = 0;
-  bool first_ = true, ended_ = false;
+  int direction_ = 1;  // in which the next step goes along the tangent
+  bool ended_ = false;
   std::string landing_;
 };
 
@@ -359,8 +377,8 @@ class Walk {
 
 PathSummary follow_arc(PathProblem& problem, Workspace& workspace, const NewtonOptions& newton,
                        const ArcLengthOptions& options, const std::optional<Watch>& watch,
-                       const PathCallback& callback) {
-  return Walk(problem, workspace, newton, options, watch, callback).run();
+                       const PathCallback& callback, const PathStart& start) {
+  return Walk(problem, workspace, newton, options, watch, callback, start).run();
 }
 
 }  // namespace tautline::analysis

@@ -20,11 +20,11 @@ double ratio(double value, double reference) {
   return reference > 0 ? value / reference : std::numeric_limits<double>::infinity();
 }
 
+}  // namespace
+
 double relative_residual(const ResidualNorms& norms) {
   return std::max(ratio(norms.force, norms.reference_force), ratio(norms.moment, norms.reference_moment));
 }
-
-}  // namespace
 
 la::Verdict Judge::operator()(int iteration, const la::Vector& f, const la::Vector& increment) {
   if (la::true_on_any_rank(interrupt_requested())) throw Interrupted();

@@ -7,6 +7,9 @@
 
 namespace tautline::analysis {
 
+/// The larger of force and moment out of balance over their references.
+double relative_residual(const ResidualNorms& norms);
+
 /// The stopping rule and the record of one solve.
 class Judge {
  public:

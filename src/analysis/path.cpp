@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include <tautline/analysis/descent.hpp>
 #include <tautline/analysis/stability.hpp>
 
 namespace tautline::analysis {
@@ -34,8 +36,13 @@ NewtonSummary solve_point(PathProblem& problem, Workspace& workspace, const Newt
 class Driver {
  public:
   Driver(PathProblem& problem, Workspace& workspace, const NewtonOptions& options,
-         const PathCallback& callback, double start)
-      : problem_(problem), workspace_(workspace), options_(options), callback_(callback), reached_(start) {}
+         const PathCallback& callback, const PathStart& start)
+      : problem_(problem),
+        workspace_(workspace),
+        options_(options),
+        callback_(callback),
+        reached_(start.lambda),
+        lost_(start.unknown) {}
 
   PathSummary run() {
     problem_.set_lambda(reached_);
@@ -62,13 +69,18 @@ class Driver {
   bool advance() {
     const double aim = next_point(reached_, step_, options_.increments);
     problem_.set_lambda(aim);
-    auto newton = solve_point(problem_, workspace_, options_, [&](int iteration, double residual) {
+    const IterationCallback tell = [&](int iteration, double residual) {
       if (callback_.iteration) callback_.iteration(aim, iteration, residual);
-    });
+    };
+    auto newton = solve_point(problem_, workspace_, options_, tell);
     summary_.newton_iterations += newton.newton_iterations();
+    const bool lost = std::exchange(lost_, false);
+    if (lost && (!newton.converged() || workspace_.solver.inertia().negative > 0))
+      newton = go_downhill(std::move(newton), tell);
     if (!newton.converged()) return shorten(aim, newton);
     if (newton.newton_iterations() <= easy_iterations) step_ = std::min(2 * step_, 1.0 / options_.increments);
     note_inertia(newton);
+    if (lost) negative_ = inertia_.negative;  // what led here is no path that could hold critical points
     problem_.commit();
     look_between(aim);
     here_ = problem_.keep();
@@ -76,6 +88,21 @@ class Driver {
     summary_.points.push_back({aim, std::move(newton), inertia_.negative});
     if (callback_.converged) callback_.converged(summary_.points.back());
     return true;
+  }
+
+  /// From where no equilibrium is known and Newton's method found none, or an unstable one, which is taken if
+  /// nothing better is found.
+  NewtonSummary go_downhill(NewtonSummary newton, const IterationCallback& tell) {
+    const auto there = problem_.keep();
+    problem_.roll_back();
+    if (!problem_.predict(workspace_)) problem_.roll_back();
+    auto descent = descend(problem_, workspace_, options_, tell);
+    summary_.descent_steps += descent.steps;
+    summary_.newton_iterations += descent.newton.newton_iterations();
+    if (descent.newton.converged() || !newton.converged()) return std::move(descent.newton);
+    problem_.return_to(*there);
+    count_negative(problem_, workspace_);
+    return newton;
   }
 
   bool shorten(double aim, const NewtonSummary& newton) {
@@ -131,6 +158,7 @@ class Driver {
       negative_ = found->negative_after;
       low += behind * (aim - low);
       summary_.critical.push_back(std::move(*found));
+      if (callback_.critical) callback_.critical(summary_.critical.back());
     }
     negative_ = after;
     problem_.return_to(*there);
@@ -146,13 +174,14 @@ class Driver {
   std::shared_ptr<const PathProblem::Kept> here_;
   la::Inertia inertia_;
   double reached_, step_ = 1.0 / options_.increments;
+  bool lost_;          // no equilibrium is known
   int negative_ = -1;  // at the last point; not known at the start
 };
 
 }  // namespace
 
 PathSummary follow_path(PathProblem& problem, Workspace& workspace, const NewtonOptions& options,
-                        const PathCallback& callback, double start) {
+                        const PathCallback& callback, const PathStart& start) {
   return Driver(problem, workspace, options, callback, start).run();
 }
 

@@ -80,11 +80,8 @@ class Motion {
  private:
   /// One mass for all directions of a block: what is soft across may turn into the stiff direction.
   std::vector<double> masses() const {
-    auto sums = workspace_.tangent.absolute_row_sums();
-    for (std::size_t block = 0; block < sums.size(); block += 3) {
-      const double most = std::max({sums[block], sums[block + 1], sums[block + 2], 1e-300});
-      for (std::size_t i = block; i < block + 3; ++i) sums[i] = safety * most / 2;
-    }
+    auto sums = workspace_.tangent.absolute_row_sums_of_blocks();
+    for (double& sum : sums) sum *= safety / 2;
     return sums;
   }
   void divide(la::Vector& v) const {

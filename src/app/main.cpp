@@ -1,9 +1,11 @@
 /// @file
 /// The command line. CLI11 is slow to compile and stays in this file.
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <thread>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 #include <tautline/deck/deck.hpp>
 #include <tautline/la/session.hpp>
 #include <tautline/output/report.hpp>
+#include <tautline/steps/parameter_study.hpp>
 #include <tautline/steps/run.hpp>
 #include <tautline/steps/version.hpp>
 
@@ -25,6 +28,8 @@ struct Request {
   std::string deck, directory, key, kind, checkpoint;
   std::vector<std::string> overrides, directories;
   std::vector<int> subdivisions{2, 4, 6, 8};
+  std::vector<std::string> over, report;
+  int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   bool quiet = false, no_pictures = false;
 };
 
@@ -49,6 +54,15 @@ int study(const Request& request) {
   return static_cast<int>(steps::study(request.deck, request.overrides, request.subdivisions,
                                        {directory_of(request, "_study"), !request.no_pictures, ""},
                                        progress));
+}
+
+int study_parameters(const Request& request) {
+  steps::ParameterStudy wanted{request.deck, request.overrides, {}, {}, request.jobs};
+  for (const auto& text : request.over) wanted.over.push_back(steps::read_range(text));
+  for (const auto& text : request.report) wanted.quantities.push_back(steps::read_quantity(text));
+  Progress progress(progress_mode(request));
+  return static_cast<int>(
+      steps::study_parameters(wanted, {directory_of(request, "_study"), !request.no_pictures, ""}, progress));
 }
 
 int check(const Request& request) {
@@ -95,6 +109,33 @@ int in_session(const std::function<int()>& action) {
   return code;
 }
 
+/// Runs side by side are processes of their own, which MPI does not allow once it was started here.
+int any_study(const Request& request) {
+  if (request.over.empty()) return in_session([&] { return study(request); });
+  if (la::launched_by_mpirun()) return in_session([&] { return study_parameters(request); });
+  watch_for_interrupt();
+  return guarded([&] { return study_parameters(request); });
+}
+
+void add_study_options(CLI::App& command, Request& request) {
+  auto* subdivisions = command.add_option("--subdivisions", request.subdivisions,
+                                          "parts of each facet side: surface error and time against them");
+  subdivisions->delimiter(',');
+  command
+      .add_option(
+          "--over", request.over,
+          "a parameter of the deck, or a path, and its values: rings=8,10,12; several: every combination")
+      ->allow_extra_args(false)
+      ->excludes(subdivisions);
+  command
+      .add_option("--report", request.report,
+                  "with --over: what to report, a path into results.json, best with a label: "
+                  "\"RMS [m]=/steps/tuning/surface/rms\"")
+      ->allow_extra_args(false);
+  command.add_option("--jobs", request.jobs, "with --over: runs side by side (default: as many as cores)")
+      ->check(CLI::Range(1, 1024));
+}
+
 void add_deck_options(CLI::App& command, Request& request) {
   command.add_option("deck", request.deck, "the deck, a YAML file")->required();
   command.add_option("--set", request.overrides, "change a value of the deck: path.to.key=value")
@@ -139,12 +180,15 @@ int main(int argc, char** argv) {
   check_command->footer("Example: tautline check inputs/perimeter_truss_12m.yaml");
   on_ranks(check_command, check);
 
-  auto* study_command = app.add_subcommand("study", "run a deck with several subdivisions and compare");
+  auto* study_command =
+      app.add_subcommand("study", "run a deck with several values of its parameters and compare");
   add_run_options(*study_command, request);
-  study_command->add_option("--subdivisions", request.subdivisions, "parts of each facet side")
-      ->delimiter(',');
-  study_command->footer("Example: tautline study inputs/perimeter_truss_12m.yaml --subdivisions 2,4,6,8");
-  on_ranks(study_command, study);
+  add_study_options(*study_command, request);
+  study_command->footer(
+      "Example: tautline study inputs/perimeter_truss_12m.yaml --subdivisions 2,4,6,8\n"
+      "         tautline study inputs/perimeter_truss_12m.yaml --over reflector.rings=8,10 --over "
+      "subdivisions=2,4");
+  study_command->callback([&] { result = any_study(request); });
 
   auto* new_command = app.add_subcommand("new", "print a commented starting deck");
   new_command

@@ -1,5 +1,7 @@
 // What acts: from the loads of a boundary to forces on nodes, pressures of facets and changes of temperature.
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -61,6 +63,68 @@ void add_weight(const Model& model, const State& state, const Element& element, 
     }
 }
 
+/// Mean of a field over a line, by Simpson's rule: exact up to the third power.
+double mean_over(const std::function<double(const Vec3&)>& field, const Model& model,
+                 const std::array<int, 2>& nodes) {
+  const Vec3 &a = model.nodes[nodes[0]], &b = model.nodes[nodes[1]];
+  return (field(a) + 4 * field((a + b) / 2) + field(b)) / 6;
+}
+
+/// Mean of a field over a facet: of the middles of a triangle's sides, exact up to the second power; of the
+/// points of Gauss's rule of a quadrilateral.
+double mean_over(const std::function<double(const Vec3&)>& field, const Model& model,
+                 const FacetNodes& nodes) {
+  const auto x = [&](std::size_t i) -> const Vec3& { return model.nodes[nodes[static_cast<int>(i)]]; };
+  double sum = 0;
+  if (nodes.size() == 3) {
+    for (std::size_t i = 0; i < 3; ++i) sum += field((x(i) + x((i + 1) % 3)) / 2) / 3;
+    return sum;
+  }
+  const double g = 1 / std::sqrt(3.0);
+  for (const double r : {-g, g})
+    for (const double s : {-g, g})
+      sum += field(((1 - r) * (1 - s) * x(0) + (1 + r) * (1 - s) * x(1) + (1 + r) * (1 + s) * x(2) +
+                    (1 - r) * (1 + s) * x(3)) /
+                   4) /
+             4;
+  return sum;
+}
+
+/// Changes of temperature of the elements that a load names, behind those of `first` elements.
+template <class Element>
+void add_temperature(const Model& model, const std::vector<Element>& elements,
+                     const std::vector<int>& selected, const Load& load, std::size_t first, Acting& to) {
+  for (const int i : selected) {
+    double& change = to.temperature[first + static_cast<std::size_t>(i)];
+    change += load.temperature_change;
+    if (load.temperature_field)
+      change += mean_over(load.temperature_field, model, elements[static_cast<std::size_t>(i)].nodes);
+  }
+}
+
+void add_temperatures(const Model& model, const Selection& selected, const Load& load, Acting& to) {
+  std::size_t first = 0;
+  const auto add = [&](const auto& elements, const std::vector<int>& indices) {
+    add_temperature(model, elements, indices, load, first, to);
+    first += elements.size();
+  };
+  add(model.cables, selected.cables);
+  add(model.beams, selected.beams);
+  add(model.membranes, selected.membranes);
+  add(model.shells, selected.shells);
+  if (!load.temperature_gradient) return;
+  for (const int i : selected.beams) {
+    const auto& [a, b] = model.beams[i].nodes;
+    const Vec3 middle = (model.nodes[a] + model.nodes[b]) / 2, gradient = load.temperature_gradient(middle);
+    if (!gradient.allFinite())
+      throw ModelError(fmt::format(
+          "load \"{}\": temperature_field has no slope at ({:.4g}, {:.4g}, {:.4g}), the middle of a "
+          "beam, which bends with it",
+          load.name, middle.x(), middle.y(), middle.z()));
+    to.temperature_gradient[static_cast<std::size_t>(i)] += gradient;
+  }
+}
+
 }  // namespace
 
 void System::add_element_loads(const Load& load, Acting& to) const {
@@ -84,19 +148,21 @@ void System::add_element_loads(const Load& load, Acting& to) const {
       add_surface(model_, model_.shells[i], load.surface_force, to);
       to.pressure[model_.membranes.size() + static_cast<std::size_t>(i)] += load.pressure;
     }
-    if (const int group = model_.find_group(name); group >= 0)
-      to.temperature[static_cast<std::size_t>(group)] += load.temperature_change;
+    if (load.temperature_change != 0 || load.temperature_field) add_temperatures(model_, selected, load, to);
   }
 }
 
 Acting System::acting(const Boundary& boundary) const {
-  Acting result{Points(model_.nodes.size(), Vec3::Zero()),
-                Points(model_.nodes.size(), Vec3::Zero()),
-                Points(model_.beams.size(), Vec3::Zero()),
-                std::vector<double>(model_.membranes.size() + model_.shells.size(), 0.0),
-                std::vector<double>(model_.groups.size(), 0.0),
-                {},
-                Vec3::Zero()};
+  Acting result{
+      Points(model_.nodes.size(), Vec3::Zero()),
+      Points(model_.nodes.size(), Vec3::Zero()),
+      Points(model_.beams.size(), Vec3::Zero()),
+      std::vector<double>(model_.membranes.size() + model_.shells.size(), 0.0),
+      std::vector<double>(
+          model_.cables.size() + model_.beams.size() + model_.membranes.size() + model_.shells.size(), 0.0),
+      Points(model_.beams.size(), Vec3::Zero()),
+      {},
+      Vec3::Zero()};
   for (const auto& cable : model_.cables) result.strain.push_back(cable.initial_strain);
   for (const auto& load : boundary.loads) {
     for (const int node : load.nodes) {

@@ -42,6 +42,7 @@ Acting Acting::blended(const Acting& other, double t) const {
           blend(line, other.line),
           blend(pressure, other.pressure),
           blend(temperature, other.temperature),
+          blend(temperature_gradient, other.temperature_gradient),
           blend(strain, other.strain),
           (1 - t) * acceleration + t * other.acceleration};
 }
@@ -151,16 +152,20 @@ OutOfBalance System::begin_stage(const Boundary& boundary) {
   apply(0);
   OutOfBalance result;
   for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
-    const auto size_of = [&](int block) {
+    const auto size_of = [&](const std::vector<double>& forces, int block) {
       Vec3 value = Vec3::Zero();
       for (int c = 0; block >= 0 && c < 3; ++c)
         if (!held()[static_cast<std::size_t>(3 * block + c)])
-          value[c] = imbalance[static_cast<std::size_t>(3 * block + c)];
+          value[c] = forces[static_cast<std::size_t>(3 * block + c)];
       return value.norm();
     };
-    const double force = size_of(map_.displacement_block[node]);
-    if (force > result.force) result = {force, result.moment, static_cast<int>(node)};
-    result.moment = std::max(result.moment, size_of(map_.rotation_block[node]));
+    const double force = size_of(imbalance, map_.displacement_block[node]);
+    if (force > result.force) {
+      result.force = force;
+      result.node = static_cast<int>(node);
+    }
+    result.moment = std::max(result.moment, size_of(imbalance, map_.rotation_block[node]));
+    result.before = std::max(result.before, size_of(start_residual_, map_.displacement_block[node]));
   }
   return result;
 }
@@ -181,9 +186,19 @@ void System::apply(double lambda) {
   lambda_ = lambda;
   now_ = start_.blended(end_, lambda);
   for (std::size_t i = 0; i < model_.cables.size(); ++i) model_.cables[i].initial_strain = now_.strain[i];
-  for (std::size_t g = 0; g < model_.groups.size(); ++g)
-    model_.groups[g].temperature_change = now_.temperature[g];
-  for (std::size_t i = 0; i < model_.beams.size(); ++i) model_.beams[i].line_load = now_.line[i];
+  std::size_t next = 0;
+  const auto warm = [&](auto& elements) {
+    for (auto& element : elements) element.temperature_change = now_.temperature[next++];
+  };
+  warm(model_.cables);
+  warm(model_.beams);
+  warm(model_.membranes);
+  warm(model_.shells);
+  for (std::size_t i = 0; i < model_.beams.size(); ++i) {
+    auto& beam = model_.beams[i];
+    beam.line_load = now_.line[i];
+    beam.temperature_gradient = beam.frame.rightCols<2>().transpose() * now_.temperature_gradient[i];
+  }
   model_.acceleration = now_.acceleration;
 }
 

@@ -1,5 +1,6 @@
 #include <tautline/core/expression.hpp>
 
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <map>
@@ -13,7 +14,8 @@ namespace tautline {
 
 namespace {
 
-using Node = std::function<Jet2(const Jet2&)>;
+/// A part of a formula, evaluated at the values of its variables.
+using Node = std::function<Jet2(const Jet2*)>;
 
 Jet2 operator+(const Jet2& a, const Jet2& b) {
   return {a.value + b.value, a.first + b.first, a.second + b.second};
@@ -94,10 +96,16 @@ const std::map<std::string, Function>& functions() {
   return table;
 }
 
+/// Names of variables and their places; `list` is how messages call them.
+struct Variables {
+  std::map<std::string, int> place;
+  std::string list;
+};
+
 /// Recursive descent: sum, product, sign, power, operand.
 class Parser {
  public:
-  explicit Parser(const std::string& text) : text_(text) {}
+  Parser(const std::string& text, const Variables& variables) : text_(text), variables_(variables) {}
 
   Node parse() {
     Node node = sum();
@@ -126,7 +134,7 @@ class Parser {
       if (!minus && peek() != '+') return left;
       ++at_;
       Node right = product();
-      left = [left, right, minus](const Jet2& x) { return left(x) + (minus ? -right(x) : right(x)); };
+      left = [left, right, minus](const Jet2* x) { return left(x) + (minus ? -right(x) : right(x)); };
     }
   }
 
@@ -137,7 +145,7 @@ class Parser {
       if (!over && peek() != '*') return left;
       ++at_;
       Node right = signed_power();
-      left = [left, right, over](const Jet2& x) {
+      left = [left, right, over](const Jet2* x) {
         return left(x) * (over ? power(right(x), {-1, 0, 0}) : right(x));
       };
     }
@@ -147,14 +155,14 @@ class Parser {
     if (take('+')) return signed_power();
     if (!take('-')) return raised();
     Node node = signed_power();
-    return [node](const Jet2& x) { return -node(x); };
+    return [node](const Jet2* x) { return -node(x); };
   }
 
   Node raised() {
     Node base = operand();
     if (!take('^')) return base;
     Node exponent = signed_power();
-    return [base, exponent](const Jet2& x) { return power(base(x), exponent(x)); };
+    return [base, exponent](const Jet2* x) { return power(base(x), exponent(x)); };
   }
 
   Node operand() {
@@ -166,7 +174,7 @@ class Parser {
     }
     if (std::isdigit(static_cast<unsigned char>(next)) || next == '.') return number();
     if (std::isalpha(static_cast<unsigned char>(next))) return word();
-    fail(next == '\0' ? "a number, X or a function is missing"
+    fail(next == '\0' ? fmt::format("a number, {} or a function is missing", variables_.list)
                       : fmt::format("\"{}\" does not fit here", next));
   }
 
@@ -174,32 +182,53 @@ class Parser {
     std::size_t length = 0;
     const double value = std::stod(text_.substr(at_), &length);
     at_ += length;
-    return [value](const Jet2&) { return Jet2{value, 0, 0}; };
+    return [value](const Jet2*) { return Jet2{value, 0, 0}; };
   }
 
   Node word() {
     const std::size_t begin = at_;
     while (at_ < text_.size() && std::isalnum(static_cast<unsigned char>(text_[at_]))) ++at_;
     const std::string name = text_.substr(begin, at_ - begin);
-    if (name == "X" || name == "x") return [](const Jet2& x) { return x; };
-    if (name == "pi") return [](const Jet2&) { return Jet2{std::numbers::pi, 0, 0}; };
+    if (const auto variable = variables_.place.find(name); variable != variables_.place.end())
+      return [place = variable->second](const Jet2* x) { return x[place]; };
+    if (name == "pi") return [](const Jet2*) { return Jet2{std::numbers::pi, 0, 0}; };
     const auto known = functions().find(name);
     if (known == functions().end()) {
       at_ = begin;
-      fail(fmt::format("\"{}\" is neither X, pi nor a function", name));
+      fail(fmt::format("\"{}\" is neither {}, pi nor a function", name, variables_.list));
     }
     if (!take('(')) fail(fmt::format("{} needs its argument in parentheses", name));
     Node inner = sum();
     if (!take(')')) fail("a closing parenthesis is missing");
-    return [inner, function = known->second](const Jet2& x) { return function(inner(x)); };
+    return [inner, function = known->second](const Jet2* x) { return function(inner(x)); };
   }
 
   const std::string& text_;
+  const Variables& variables_;
   std::size_t at_ = 0;
 };
 
 }  // namespace
 
-Expression::Expression(const std::string& text) : evaluate_(Parser(text).parse()) {}
+Expression::Expression(const std::string& text)
+    : evaluate_(Parser(text, {{{"X", 0}, {"x", 0}}, "X"}).parse()) {}
+
+SpaceFormula::SpaceFormula(const std::string& text)
+    : evaluate_(Parser(text, {{{"x", 0}, {"y", 1}, {"z", 2}}, "x, y, z"}).parse()) {}
+
+double SpaceFormula::operator()(const Vec3& x) const {
+  const std::array<Jet2, 3> at{Jet2{x[0], 0, 0}, Jet2{x[1], 0, 0}, Jet2{x[2], 0, 0}};
+  return evaluate_(at.data()).value;
+}
+
+Vec3 SpaceFormula::gradient(const Vec3& x) const {
+  Vec3 result;
+  for (int k = 0; k < 3; ++k) {
+    std::array<Jet2, 3> at{Jet2{x[0], 0, 0}, Jet2{x[1], 0, 0}, Jet2{x[2], 0, 0}};
+    at[static_cast<std::size_t>(k)].first = 1;
+    result[k] = evaluate_(at.data()).first;
+  }
+  return result;
+}
 
 }  // namespace tautline

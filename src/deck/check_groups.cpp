@@ -150,7 +150,7 @@ class GroupCheck {
     return std::any_of(deck_.steps.begin(), deck_.steps.end(), [&](const steps::Step& step) {
       const auto* form_finding = std::get_if<FormFindingOptions>(&step.options);
       if (form_finding == nullptr || step.kind.empty()) return false;
-      if (deck_.dish()) return group == "ties";
+      if (deck_.dish()) return group == "ties" && deck_.y_umbrella() == nullptr;
       const bool in_net = form_finding->net.empty() || contains(form_finding->net, group);
       using enum steps::FormMethod;
       const bool finds_densities = form_finding->method == linear || form_finding->method == constraints ||

@@ -112,7 +112,15 @@ class StepCheck {
   }
 
   void check_form_finding(const FormFindingOptions& options, const Node& node) {
+    if (deck_.y_umbrella()) {
+      reader_.complain(
+          node.label, "form_finding does not know the net of a y-umbrella", context_, {},
+          "its beams are part of it: give its cords their tensions and begin with an equilibrium");
+      return;
+    }
     if (deck_.dish()) check_reflector_form(options, node);
+    if (const Node* rear = node.find("rear"); rear != nullptr && deck_.dish() == nullptr)
+      reader_.complain(rear->label, "\"rear\" is for reflectors", context_, {}, "a plain model has one net");
     if (options.method != FormMethod::tension) return;
     for (const auto& group : net_of(options)) {
       const Node* block = root_.at({"groups", group});
@@ -140,9 +148,24 @@ class StepCheck {
         reader_.complain(value->label, fmt::format("\"{}\" is for plain models", key), context_, {},
                          "the net of a reflector is fixed on its rim or spokes and lies on its paraboloid");
     if (options.method != FormMethod::tension && options.method != FormMethod::linear &&
-        options.method != FormMethod::constraints)
+        options.method != FormMethod::balanced && options.method != FormMethod::constraints)
       reader_.complain(*node.find("method"), "this method does not bind a net to a paraboloid",
-                       "expected one of: tension, linear, constraints");
+                       "expected one of: tension, linear, balanced, constraints");
+    check_rear(options, node);
+  }
+
+  /// A rear net that is found by itself hangs in a rigid frame, and only the same pattern can be mirrored.
+  void check_rear(const FormFindingOptions& options, const Node& node) {
+    const auto* umbrella = deck_.umbrella();
+    const bool differs = umbrella != nullptr &&
+                         umbrella->rear_pattern.value_or(umbrella->front_pattern) != umbrella->front_pattern;
+    const RearForm rear = options.rear.value_or(differs ? RearForm::balanced : RearForm::mirrored);
+    if (differs && rear == RearForm::mirrored)
+      reader_.complain(*node.find("rear"), "the rear net has another pattern than the front net", context_,
+                       "expected one of: tension, balanced");
+    if (rear != RearForm::mirrored && options.frame != FrameKind::rigid)
+      reader_.complain(*node.find("frame"), "a rear net found by itself needs a rigid frame", context_,
+                       "expected frame: rigid");
   }
 
   std::vector<std::string> net_of(const FormFindingOptions& options) const {

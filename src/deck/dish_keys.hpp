@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// Keys that the reflectors of nets and ties share, of reflector::DishOptions.
+/// Keys that the reflectors of nets and ties share, of reflector::DishOptions and TriangularNetOptions.
 
 #include <deck/builder.hpp>
 #include <tautline/deck/deck.hpp>
@@ -30,6 +30,28 @@ void add_surface_keys(Builder& b) {
 }
 
 template <class Builder>
+void add_triangular_net_keys(Builder& b) {
+  using Options = reflector::TriangularNetOptions;
+  b.key("rings", &Options::rings)
+      .at_least(1)
+      .says("Rings of triangles in the net; the rim has 6 x rings nodes.");
+  b.key("gap", &Options::gap).in("m").at_least(0).says("Extra distance between front and rear net.");
+  b.key("rim_height", &Options::rim_height)
+      .in("m")
+      .by_default("highest point of the surface over the rim")
+      .says("Height z of the plane on whose circle the front net hangs.");
+}
+
+template <class Builder>
+void add_radius_key(Builder& b) {
+  b.key("evaluation_radius", &reflector::DishOptions::evaluation_radius)
+      .in("m")
+      .above(0)
+      .by_default("all of the surface")
+      .says("The surface error is taken inside this radius; at most aperture/2.");
+}
+
+template <class Builder>
 void add_frequency_key(Builder& b) {
   b.key("frequency", &reflector::DishOptions::frequency)
       .in("Hz")
@@ -39,5 +61,7 @@ void add_frequency_key(Builder& b) {
 
 /// Complains about a clearance outside the dish.
 void check_clearance(Reader& reader, const Node& node, const reflector::DishOptions& options);
+/// Complains about an evaluation_radius outside the dish.
+void check_radius(Reader& reader, const Node& node, const reflector::DishOptions& options);
 
 }  // namespace tautline::deck

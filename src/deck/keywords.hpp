@@ -7,7 +7,9 @@
 namespace tautline::deck {
 
 const BlockSet& reflector_blocks();        ///< of Reflector
+Block tensegrity_rim_block();              ///< of reflector::TensegrityRimOptions
 Block umbrella_block();                    ///< of reflector::UmbrellaOptions
+Block y_umbrella_block();                  ///< of reflector::YUmbrellaOptions
 Block rod_umbrella_block();                ///< of rod::UmbrellaOptions
 const BlockSet& target_meridian_blocks();  ///< of rod::MeridianOptions, in targets of an inverse
 Block inverse_block();                     ///< of steps::InverseOptions

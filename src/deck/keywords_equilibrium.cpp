@@ -117,16 +117,20 @@ const BlockSet& until_blocks() {
 const BlockSet& scatter_blocks() {
   static const BlockSet set = [] {
     BlockBuilder<ScatterOptions> b("steps.equilibrium.scatter", "",
-                                   "Random displacements of a net at the start of the step, to see whether "
-                                   "the equilibrium depends on where the search begins.");
+                                   "Random changes at the start of the step, to see whether the equilibrium "
+                                   "depends on where the search begins.");
     b.key("position", &ScatterOptions::position)
         .in("m")
         .at_least(0)
         .says(
-            "Each coordinate of each free node of the structure that no beam or shell holds is displaced by "
-            "a random "
-            "amount up to this one, either way, and the mesh with it; unstressed lengths stay.");
-    b.key("seed", &ScatterOptions::seed).at_least(0).says("Another seed gives other displacements.");
+            "Each coordinate of each free node of the structure is displaced by a random amount up to this "
+            "one, either way, and the mesh with it; rotations stay.");
+    b.key("tension", &ScatterOptions::tension)
+        .at_least(0)
+        .says(
+            "The initial strain of each cable is changed by a random part of it, up to this one, either way; "
+            "at the end of the first stage it is again what it was.");
+    b.key("seed", &ScatterOptions::seed).at_least(0).says("Another seed gives another start.");
     return BlockSet{
         "steps.equilibrium.scatter", "A start that is not quite where it should be.", {b.take()}, {}};
   }();
@@ -156,6 +160,9 @@ void check_equilibrium(Reader& reader, const Node& node, EquilibriumOptions& opt
     if (const Node* value = node.find("stages"))
       reader.complain(value->label, "\"stages\" has no effect with release automatic", reader.context(), {},
                       "the program looks for the stages itself");
+    if (const Node* value = node.find("scatter"); value != nullptr && options.scatter.tension > 0)
+      reader.complain(value->label, "scatter.tension has no effect with release automatic", reader.context(),
+                      {}, "give the stages, or scatter positions only");
     if (const Node* value = node.find("control"); value != nullptr && options.control == Control::arc_length)
       reader.complain(value->label, "control arc_length does not go with release automatic", reader.context(),
                       {}, "release first, and follow the path in a step of its own");
@@ -211,12 +218,20 @@ Block equilibrium_block() {
           "as_given: in `stages`; automatic: the program looks for groups of beams and shells to hold at "
           "first, and "
           "reports the stages that it found as text for a deck.");
-  b.choice("fallback", &Options::fallback,
-           std::vector<std::pair<std::string, Fallback>>{
-               {"none", Fallback::none}, {"dynamic_relaxation", Fallback::dynamic_relaxation}})
-      .says("What is tried where Newton's method gives up; Newton's method then polishes what was found.");
+  b.choice(
+       "fallback", &Options::fallback,
+       std::vector<std::pair<std::string, Fallback>>{{"automatic", Fallback::automatic},
+                                                     {"none", Fallback::none},
+                                                     {"descent", Fallback::descent},
+                                                     {"dynamic_relaxation", Fallback::dynamic_relaxation}})
+      .says(
+          "What is tried where Newton's method gives up; Newton's method then polishes what was found. "
+          "descent: "
+          "steps downhill in the potential energy to a stable equilibrium, also beyond a limit; "
+          "dynamic_relaxation: the same with inertia, slower; automatic: descent from a start that is not in "
+          "balance by itself, as long as no equilibrium is known.");
   b.block("scatter", &Options::scatter, scatter_blocks())
-      .says("Random displacements of the free nodes of nets and films at the start of the step.");
+      .says("Random displacements and tensions at the start of the step.");
   b.check(check_equilibrium);
   return b.take();
 }

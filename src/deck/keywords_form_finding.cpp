@@ -245,11 +245,9 @@ const std::vector<Home>& homes() {
 const std::vector<std::pair<std::string, FormMethod>>& methods() {
   using enum FormMethod;
   static const std::vector<std::pair<std::string, FormMethod>> words{
-      {"tension", tension},
-      {"linear", linear},
-      {"constraints", constraints},
-      {"elastic", elastic},
-      {"dynamic_relaxation", dynamic_relaxation},
+      {"tension", tension},   {"linear", linear},
+      {"balanced", balanced}, {"constraints", constraints},
+      {"elastic", elastic},   {"dynamic_relaxation", dynamic_relaxation},
       {"film", film}};
   return words;
 }
@@ -319,6 +317,15 @@ void add_net_keys(Builder& b) {
           "as drawn, yields under the net until both are in balance; precambered: the drawn frame is that "
           "under "
           "the net, and the shape without stress is found. With the last two an analysis starts at rest.");
+  b.choice("rear", &Options::rear,
+           std::vector<std::pair<std::string, RearForm>>{{"mirrored", RearForm::mirrored},
+                                                         {"tension", RearForm::tension},
+                                                         {"balanced", RearForm::balanced}})
+      .by_default("balanced if the rear net's pattern differs from the front net's, else mirrored")
+      .says(
+          "Reflectors: the rear net. mirrored: the front net's image; tension, balanced: found by itself, by "
+          "the method of that name, under the pull of the ties; both nets and the inclined ties are then "
+          "brought into balance together.");
   b.key("loads", &Options::loads)
       .refers("load")
       .says("Loads whose nodal forces act; let them act in the equilibrium that follows, too.");
@@ -343,7 +350,8 @@ void add_method_keys(Builder& b) {
   b.choice("method", &Options::method, methods())
       .says(
           "tension: for the tensions of the groups, while groups that state a force density keep it; linear: "
-          "for given force densities; constraints: any "
+          "for given force densities; balanced: for force densities that balance the net where it is drawn, "
+          "as well as can be, with tensions near those of the groups; constraints: any "
           "mixture of demands; elastic: for unstressed lengths, by Newton's method; dynamic_relaxation: for "
           "unstressed lengths, constant tensions and films; film: soap films with cables.");
   b.choice("solver", &Options::solver,

@@ -11,16 +11,6 @@ namespace {
 
 using Options = reflector::PerimeterTrussOptions;
 
-void check_radius(Reader& reader, const Node& node, Options& options) {
-  const double radius = options.aperture / 2;
-  if (const Node* measured = node.find("evaluation_radius");
-      measured != nullptr && radius > 0 && options.evaluation_radius > radius)
-    reader.complain(*measured,
-                    fmt::format("evaluation_radius = {} is larger than the dish",
-                                format_number(options.evaluation_radius)),
-                    fmt::format("expected at most aperture/2 = {} [m]", format_number(radius)));
-}
-
 void check_struts(Reader& reader, const Node& node, Options& options) {
   const Node* struts = node.find("struts");
   const int rim_nodes = 6 * options.rings;
@@ -40,14 +30,7 @@ Block make_perimeter_truss() {
       "Two triangular nets joined by ties between an upper and a lower rim that struts "
       "and crossed cords hold apart.");
   add_surface_keys(b);
-  b.key("rings", &Options::rings)
-      .at_least(1)
-      .says("Rings of triangles in the net; the rim has 6 x rings nodes.");
-  b.key("gap", &Options::gap).in("m").at_least(0).says("Extra distance between front and rear net.");
-  b.key("rim_height", &Options::rim_height)
-      .in("m")
-      .by_default("highest point of the surface over the rim")
-      .says("Height z of the front rim's plane.");
+  add_triangular_net_keys(b);
   b.key("struts", &Options::struts)
       .at_least(3)
       .by_default("3 x rings: one for each second rim node")
@@ -58,11 +41,7 @@ Block make_perimeter_truss() {
       .at_most(360)
       .says("Azimuth of the strut in the selection `held_strut`.");
   b.key("diagonals", &Options::diagonals).says("Crossed cords in every bay between struts.");
-  b.key("evaluation_radius", &Options::evaluation_radius)
-      .in("m")
-      .above(0)
-      .by_default("all of the cloth")
-      .says("The surface error is taken inside this radius; at most aperture/2.");
+  add_radius_key(b);
   add_frequency_key(b);
   b.check([](Reader& reader, const Node& node, Options& options) {
     check_clearance(reader, node, options);
@@ -84,10 +63,21 @@ void check_clearance(Reader& reader, const Node& node, const reflector::DishOpti
                     format_number(-radius)));
 }
 
+void check_radius(Reader& reader, const Node& node, const reflector::DishOptions& options) {
+  const double radius = options.aperture / 2;
+  if (const Node* measured = node.find("evaluation_radius");
+      measured != nullptr && radius > 0 && options.evaluation_radius > radius)
+    reader.complain(*measured,
+                    fmt::format("evaluation_radius = {} is larger than the dish",
+                                format_number(options.evaluation_radius)),
+                    fmt::format("expected at most aperture/2 = {} [m]", format_number(radius)));
+}
+
 const BlockSet& reflector_blocks() {
   static const BlockSet set{"reflector",
                             "A parametric reflector.",
-                            {make_perimeter_truss(), umbrella_block(), rod_umbrella_block()},
+                            {make_perimeter_truss(), tensegrity_rim_block(), umbrella_block(),
+                             y_umbrella_block(), rod_umbrella_block()},
                             {}};
   return set;
 }

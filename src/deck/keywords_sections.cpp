@@ -134,6 +134,30 @@ Block make_tube() {
   return b.take();
 }
 
+Block make_square_tube() {
+  using Options = SquareTubeSectionOptions;
+  BlockBuilder<SectionOptions, Options> b(
+      "sections.square_tube", "square_tube",
+      "A beam of thin-walled square tube, its walls along local axes 2 and 3; torsion by Bredt's formula.");
+  b.key("material", &Options::material).required().refers("material").says("Material.");
+  b.key("side", &Options::side)
+      .in("m")
+      .above(0)
+      .required()
+      .says("Distance between the middles of opposite walls.");
+  b.key("thickness", &Options::thickness)
+      .in("m")
+      .above(0)
+      .required()
+      .says("Thickness of the wall; less than the side.");
+  b.key("shear_flexible", &Options::shear_flexible)
+      .says("Whether the beam shears (Timoshenko) or is rigid in shear.");
+  b.check([](Reader& reader, const Node& node, Options& o) {
+    check_wall(reader, node, "thickness", o.thickness, o.side);
+  });
+  return b.take();
+}
+
 Block make_tapered_tube() {
   using Options = TaperedTubeSectionOptions;
   BlockBuilder<SectionOptions, Options> b(
@@ -417,8 +441,8 @@ const BlockSet& section_blocks() {
       "sections",
       "Sections by name; `kind` says of what.",
       {make_cable(), make_bar(), make_catenary(), make_rectangle(), make_round(), make_tube(),
-       make_tapered_tube(), make_i(), make_general(), make_beam(), make_membrane(), make_shell(),
-       make_spring(), make_mass(), make_rigid_link(), make_hinge()},
+       make_square_tube(), make_tapered_tube(), make_i(), make_general(), make_beam(), make_membrane(),
+       make_shell(), make_spring(), make_mass(), make_rigid_link(), make_hinge()},
       {}};
   return set;
 }

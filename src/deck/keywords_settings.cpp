@@ -12,6 +12,10 @@ const BlockSet& output_blocks() {
     b.key("fields", &Options::fields).says("Fields for ParaView (.pvd, .vtu).");
     b.key("tables", &Options::tables).says("Tables (.csv).");
     b.key("pictures", &Options::pictures).says("Pictures (.png).");
+    b.key("picture_width", &Options::picture_width)
+        .at_least(400)
+        .at_most(8000)
+        .says("Width of views in pixels, at most; charts are 5/7 of it.");
     b.key("report", &Options::report).says("The report (report.html).");
     return BlockSet{"output", "Which results are written.", {b.take()}, {}};
   }();

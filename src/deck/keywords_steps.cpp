@@ -30,6 +30,23 @@ void check_mesh(Reader& reader, const Node& node, MeshOptions& options) {
                   "expected an even number for pattern mapped");
 }
 
+const BlockSet& tube_blocks() {
+  static const BlockSet set = [] {
+    using Options = model::TubeShellOptions;
+    BlockBuilder<Options> b(
+        "steps.mesh.tubes_as_shells", "",
+        "Thin tubes as shells in place of beams, joined by rigid rings at the beams' ends.");
+    b.key("groups", &Options::groups)
+        .refers("beam group")
+        .required()
+        .says("Groups of beams with a section of kind tube or tapered_tube.");
+    b.key("around", &Options::around).at_least(20).says("Shell elements round each tube.");
+    b.key("along", &Options::along).at_least(1).says("Shell elements along each beam.");
+    return BlockSet{"steps.mesh.tubes_as_shells", "Thin tubes as shells.", {b.take()}, {}};
+  }();
+  return set;
+}
+
 Block make_mesh() {
   using Pattern = model::FacetPattern;
   auto b = step_builder<MeshOptions>("mesh",
@@ -48,6 +65,9 @@ Block make_mesh() {
   b.custom("group_subdivisions", Type::counts, read_counts)
       .at_least(1)
       .says("Other numbers of parts for cable or beam groups.");
+  b.block(
+       "tubes_as_shells", [](MeshOptions & o) -> auto& { return o.subdivide.tubes; }, tube_blocks())
+      .says("Models thin round tubes by shells; the beams of these groups are then no more.");
   b.check(check_mesh);
   return b.take();
 }
@@ -69,7 +89,8 @@ Block make_tuning() {
   using Method = reflector::TuningMethod;
   using Objective = reflector::TuningObjective;
   auto b = step_builder<TuningStepOptions>(
-      "tuning", "Changes the unstressed lengths of ties until the surface is as good as it gets.");
+      "tuning",
+      "Changes the unstressed lengths of ties, or of other cables, until the surface is as good as it gets.");
   b.choice(
        "method", [](TuningStepOptions & o) -> auto& { return o.tuning.method; },
        std::vector<std::pair<std::string, Method>>{{"rule", Method::rule},
@@ -84,7 +105,10 @@ Block make_tuning() {
   b.key(
        "ties", [](TuningStepOptions & o) -> auto& { return o.tuning.ties; })
       .refers("cable group")
-      .says("Cable group that is tuned.");
+      .by_default("ties")
+      .says(
+          "Cable groups that are tuned: with rule those of which each cable begins at a front node, with "
+          "sensitivity any.");
   b.key(
        "max_passes", [](TuningStepOptions & o) -> auto& { return o.tuning.max_passes; })
       .at_least(1)

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <deck/builder.hpp>
 #include <deck/keywords.hpp>
+#include <tautline/core/expression.hpp>
 #include <tautline/core/text.hpp>
 #include <tautline/model/model_options.hpp>
 
@@ -96,13 +98,26 @@ Block make_support() {
 /// What a load can be, in the order of the table.
 const std::vector<std::string>& load_kinds() {
   static const std::vector<std::string> words{
-      "force",       "moment",        "displacement", "rotation",           "line_force",
-      "line_moment", "surface_force", "pressure",     "temperature_change", "acceleration"};
+      "force",         "moment",   "displacement",       "rotation",          "line_force",  "line_moment",
+      "surface_force", "pressure", "temperature_change", "temperature_field", "acceleration"};
   return words;
 }
 
-void check_load(Reader& reader, const Node& node, model::LoadOptions&) {
+void check_temperature_field(Reader& reader, const Node& node, const model::LoadOptions& options) {
+  if (options.temperature_field.empty()) return;
+  try {
+    const SpaceFormula checked(options.temperature_field);
+  } catch (const std::invalid_argument& error) {
+    reader.complain(
+        *node.find("temperature_field"),
+        fmt::format("\"{}\" is no formula: {}", options.temperature_field, error.what()),
+        "expected a formula of x, y, z with + - * / ^, parentheses, pi and functions as sqrt or cos");
+  }
+}
+
+void check_load(Reader& reader, const Node& node, model::LoadOptions& options) {
   check_not_empty(reader, node);
+  check_temperature_field(reader, node, options);
   const Node* acceleration = node.find("acceleration");
   int given = 0;
   for (const auto& word : load_kinds()) given += node.find(word) != nullptr;
@@ -151,6 +166,15 @@ Block make_load() {
       .in("K")
       .also_called({"temperature"})
       .says("Change of temperature of the groups in `on`.");
+  b.key("temperature_field", &Options::temperature_field)
+      .in("K")
+      .by_default("none")
+      .says(
+          "Change of temperature of the groups in `on` by place: a formula of the drawn coordinates x, y, z "
+          "[m], e.g. \"20 + 10*x\". Every element of the mesh takes the mean over itself; over the section "
+          "of a "
+          "beam it goes linearly, with the slope of the formula in the beam's middle; through a shell it is "
+          "even.");
   b.key("acceleration", &Options::acceleration)
       .in("m/s^2")
       .says("Acceleration that acts on every mass, e.g. gravity [0, 0, -9.81]; needs no `on`.");

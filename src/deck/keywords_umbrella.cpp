@@ -81,11 +81,59 @@ void add_spoke_keys(Builder& b) {
       .says("Radius of the tips on the surface: one number for all spokes, or one for each.");
 }
 
+using PatternWords = std::vector<std::pair<std::string, reflector::NetPattern>>;
+
+const PatternWords& front_patterns() {
+  using enum reflector::NetPattern;
+  static const PatternWords words{{"triangles", triangles},
+                                  {"belts", belts},
+                                  {"rectangles", rectangles},
+                                  {"right_triangles", right_triangles}};
+  return words;
+}
+
+const PatternWords& rear_patterns() {
+  static const PatternWords words = [] {
+    auto all = front_patterns();
+    all.emplace_back("coarse_triangles", reflector::NetPattern::coarse_triangles);
+    return all;
+  }();
+  return words;
+}
+
+/// The rear net has a node under each of the front net, so not every pattern fits under every other.
+void check_patterns(Reader& reader, const Node& node, const Options& options) {
+  using enum reflector::NetPattern;
+  const Node* pattern = node.find("rear_pattern");
+  if (pattern == nullptr || !options.rear_pattern) return;
+  const auto rear = *options.rear_pattern;
+  if (rear == options.front_pattern || rear == belts) return;
+  if (rear != coarse_triangles || options.front_pattern != triangles)
+    reader.complain(*pattern, "rear_pattern does not fit under front_pattern",
+                    "expected the same, belts, or under triangles coarse_triangles");
+  else if (options.rings % 2 == 1)
+    reader.complain(*pattern,
+                    fmt::format("coarse_triangles needs an even number of rings, not {}", options.rings),
+                    "every second ring of the front net is one of the rear net");
+}
+
 template <class Builder>
 void add_net_keys(Builder& b) {
   b.key("rings", &Options::rings)
       .at_least(3)
-      .says("Rings of the net; ring k has k parts between two spokes.");
+      .says("Rings of the net; ring k of triangles has k parts between two spokes.");
+  b.choice("front_pattern", &Options::front_pattern, front_patterns())
+      .says(
+          "What the cords of the front net make between two spokes. triangles: isosceles ones; belts: "
+          "tangential cords, and cords along the spokes only; rectangles: belts, and columns of cords "
+          "parallel to the bisector of the spokes; right_triangles: rectangles with a diagonal each. "
+          "Patterns "
+          "other than triangles have their rings as groups of their own, and end cords.");
+  b.choice("rear_pattern", &Options::rear_pattern, rear_patterns())
+      .by_default("front_pattern")
+      .says(
+          "The same of the rear net, which has a node under each of the front net: as in front, belts, or "
+          "(under triangles, an even number of rings) coarse_triangles of twice the side.");
   b.key("separate_rings", &Options::separate_rings)
       .says(
           "The rings are groups front_rings and rear_rings of their own. With more than six spokes they need "
@@ -100,7 +148,7 @@ void add_net_keys(Builder& b) {
   b.key("ring_sag", &Options::ring_sag)
       .at_least(0)
       .below(0.5)
-      .by_default("cord_sag")
+      .by_default("cord_sag with triangles, else 0")
       .says(
           "Before form-finding: sag of the last ring between two spokes over its span; that of the others "
           "grows "
@@ -120,7 +168,7 @@ void add_net_keys(Builder& b) {
 Block umbrella_block() {
   BlockBuilder<Reflector, Options> b(
       "reflector.umbrella", "umbrella",
-      "Spokes from a hub, each ending in a fork, that hold two triangular nets joined by ties.");
+      "Spokes from a hub, each ending in a fork, that hold two nets joined by ties.");
   add_surface_keys(b);
   add_spoke_keys(b);
   add_net_keys(b);
@@ -134,6 +182,7 @@ Block umbrella_block() {
     check_clearance(reader, node, options);
     check_spoke(reader, node, options);
     check_tips(reader, node, options);
+    check_patterns(reader, node, options);
   });
   return b.take();
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <deck/cross_checks.hpp>
 #include <deck/keywords.hpp>
+#include <deck/reflector_names.hpp>
 #include <tautline/core/text.hpp>
 
 namespace tautline::deck {
@@ -19,6 +20,23 @@ const Members& truss_groups() {
   return table;
 }
 
+/// Parts of an umbrella's nets, without front_ or rear_.
+const std::vector<const char*>& umbrella_cords() {
+  static const std::vector<const char*> list{"net",
+                                             "rings",
+                                             "columns",
+                                             "connectors",
+                                             "end_connectors",
+                                             "peripheral",
+                                             "end_peripheral",
+                                             "crossing_a_inner",
+                                             "crossing_a_outer",
+                                             "crossing_b_inner",
+                                             "crossing_b_outer",
+                                             "end_cords"};
+  return list;
+}
+
 const Members& umbrella_groups() {
   static const Members table = [] {
     Members members{{"ties", Member::cable},       {"fork_cords", Member::cable},
@@ -27,10 +45,7 @@ const Members& umbrella_groups() {
                     {"front_links", Member::beam}, {"rear_links", Member::beam},
                     {"cloth", Member::membrane},   {"hub", Member::mass}};
     for (const std::string net : {"front_", "rear_"})
-      for (const char* part :
-           {"net", "rings", "connectors", "end_connectors", "peripheral", "end_peripheral",
-            "crossing_a_inner", "crossing_a_outer", "crossing_b_inner", "crossing_b_outer", "end_cords"})
-        members[net + part] = Member::cable;
+      for (const char* part : umbrella_cords()) members[net + part] = Member::cable;
     return members;
   }();
   return table;
@@ -39,7 +54,7 @@ const Members& umbrella_groups() {
 /// What a name may have to stand for, of groups with a section.
 const std::vector<std::string>& element_group_kinds() {
   static const std::vector<std::string> list{"cable group", "cable or bar group", "line group",
-                                             "membrane group"};
+                                             "membrane group", "beam group"};
   return list;
 }
 
@@ -105,14 +120,27 @@ Names::Names(const Deck& deck, const Node& root) : root_(root) {
 }
 
 void Names::describe_reflector(const Deck& deck) {
+  if (const auto names = names_of_reflector(deck)) {
+    reflector_groups_ = names->groups;
+    optional_groups_ = names->optional_groups;
+    selections_ = names->selections;
+    numbered_ = names->numbered;
+    n_numbered_ = names->n_numbered;
+    for (const auto& [name, member] : reflector_groups_) element_groups_.push_back(name);
+    return;
+  }
   reflector_groups_ = deck.umbrella() ? umbrella_groups() : truss_groups();
   for (const auto& [name, member] : reflector_groups_) element_groups_.push_back(name);
   if (const auto* umbrella = deck.umbrella()) {
     selections_ = {"hub_nodes", "tips", "front_net_nodes", "rear_net_nodes"};
     numbered_ = "spoke_";
     n_numbered_ = umbrella->spokes;
-    if (!umbrella->end_cords) optional_groups_.insert({"front_end_cords", "rear_end_cords"});
-    if (!umbrella->separate_rings) optional_groups_.insert({"front_rings", "rear_rings"});
+    for (const char* part : umbrella_cords()) {
+      const auto front = umbrella->front_pattern, rear = umbrella->rear_pattern.value_or(front);
+      if (!reflector::has_cords(*umbrella, front, part))
+        optional_groups_.insert(fmt::format("front_{}", part));
+      if (!reflector::has_cords(*umbrella, rear, part)) optional_groups_.insert(fmt::format("rear_{}", part));
+    }
     return;
   }
   selections_ = {"held_strut", "front_net_nodes", "rear_net_nodes", "front_rim_nodes", "rear_rim_nodes"};
@@ -169,6 +197,7 @@ void Names::collect() {
     const auto what = member(name);
     if (what == Member::cable) known_["cable group"].push_back(name);
     if (what == Member::cable || what == Member::bar) known_["cable or bar group"].push_back(name);
+    if (what == Member::beam) known_["beam group"].push_back(name);
     if (what == Member::membrane) known_["membrane group"].push_back(name);
     if (what && (is_line_with_state(*what) || what == Member::beam)) known_["line group"].push_back(name);
     if (root_.at({"groups", name, "section"}) == nullptr && !defines(name)) regions.push_back(name);

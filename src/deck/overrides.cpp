@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <sstream>
+
 #include <fmt/format.h>
 
 #include <deck/keyword.hpp>
@@ -93,21 +96,50 @@ class Override {
     mapping.entries.push_back({key, place, std::move(value)});
   }
 
-  void add(Node& mapping, const std::string& key, std::string value) {
+  Node scalar(std::string value) const {
     Node node;
     node.kind = value.empty() ? Node::Kind::empty : Node::Kind::scalar;
     node.text = std::move(value);
-    insert(mapping, key, std::move(node));
+    node.place.origin = node.label.origin = "--set " + text_;
+    return node;
   }
 
-  void set(Node& node, std::string value) {
+  static bool is_list(const std::string& value) {
+    return value.size() >= 2 && value.front() == '[' && value.back() == ']';
+  }
+
+  /// [a, b]: a list of single values.
+  Node list(const std::string& value) const {
+    Node node = scalar("");
+    node.kind = Node::Kind::sequence;
+    std::istringstream items(value.substr(1, value.size() - 2));
+    for (std::string item; std::getline(items, item, ',');) {
+      item.erase(0, item.find_first_not_of(" \"'"));
+      item.erase(item.find_last_not_of(" \"'") + 1);
+      node.items.push_back(scalar(item));
+    }
+    return node;
+  }
+
+  void add(Node& mapping, const std::string& key, const std::string& value) {
+    insert(mapping, key, is_list(value) ? list(value) : scalar(value));
+  }
+
+  void set(Node& node, const std::string& value) {
+    const bool of_values =
+        node.is_sequence() && std::none_of(node.items.begin(), node.items.end(), [](const Node& item) {
+          return item.is_mapping() || item.is_sequence();
+        });
+    if (of_values && is_list(value)) {
+      node = list(value);
+      return;
+    }
     if (node.is_mapping() || node.is_sequence())
       return fail(fmt::format("this is {}, which cannot be set", node.describe()),
-                  "expected the path of a single value", "below it: " + join(steps_below(node)));
-    node = Node{};
-    node.kind = value.empty() ? Node::Kind::empty : Node::Kind::scalar;
-    node.text = std::move(value);
-    node.place.origin = node.label.origin = "--set " + text_;
+                  of_values ? "expected a list such as [a, b], or the path of a single value"
+                            : "expected the path of a single value",
+                  "below it: " + join(steps_below(node)));
+    node = scalar(value);
   }
 
   void unknown(const Node& node, const std::string& rest) {

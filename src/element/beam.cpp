@@ -127,8 +127,8 @@ Moment evaluate_moment(const BeamSection& section, const BeamGeometry& geometry,
   const std::array by_spin{SpinToRotationVector(c.rotations[0]), SpinToRotationVector(c.rotations[1])};
   Vec<7> deformation;
   deformation << c.chord.elongation, c.rotations[0], c.rotations[1];
-  const auto law =
-      detail::beam_local_law(section, c.chord.length_ref, geometry.free_strain, deformation, want);
+  const auto law = detail::beam_local_law(section, c.chord.length_ref, geometry.free_strain,
+                                          geometry.free_curvature, deformation, want);
   Vec<7> spin_force;
   spin_force << law.force[0], by_spin[0].matrix().transpose() * law.force.segment<3>(1),
       by_spin[1].matrix().transpose() * law.force.segment<3>(4);

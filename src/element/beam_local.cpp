@@ -89,7 +89,7 @@ Mat<4> bending_mass(double mass_per_length, double rotary_inertia, bool shears, 
 }  // namespace
 
 BeamLocalResponse beam_local_law(const BeamSection& section, double length, double free_strain,
-                                 const Vec<7>& deformation, Want want) {
+                                 const Vec<2>& free_curvature, const Vec<7>& deformation, Want want) {
   const std::array planes{
       bending(2, section.bending_stiffness_2, section.shear_stiffness_3, length, deformation),
       bending(3, section.bending_stiffness_3, section.shear_stiffness_2, length, deformation)};
@@ -109,8 +109,10 @@ BeamLocalResponse beam_local_law(const BeamSection& section, double length, doub
   local.force[1] -= torsion * twist;
   local.force[4] += torsion * twist;
   for (const Plane& plane : planes) {
-    local.energy += quadratic(plane, plane.stiffness_c, plane.stiffness_s);
-    add_gradient(plane, plane.stiffness_c, plane.stiffness_s, local.force);
+    Plane bent = plane;  // what is left of the bending makes moment
+    bent.c -= free_curvature[plane.a - 2] * length / 2;
+    local.energy += quadratic(bent, plane.stiffness_c, plane.stiffness_s);
+    add_gradient(bent, plane.stiffness_c, plane.stiffness_s, local.force);
   }
   if (want == Want::force) return local;
 

@@ -276,7 +276,10 @@ void FormSearch::search() {
         return all;
       },
       settings);
-  search.run(start_, [&] { result_.residual.push_back(search.error()); });
+  search.run(start_, [&] {
+    result_.residual.push_back(search.error());
+    result_.coordinate_norm.push_back(coordinate_norm(system_, search.state()));
+  });
   result_.method = settings.dense ? "dense" : "lsqr";
   result_.n_rows = n_rows;
   result_.iterations = search.iterations();

@@ -44,12 +44,6 @@ double largest_target(const VecX& target) {
   return largest;
 }
 
-Vec3 coordinate_norm(const NetSystem& system, const NetState& state) {
-  Vec3 squares = Vec3::Zero();
-  for (const int node : system.free_nodes()) squares += state.nodes.row(node).cwiseAbs2().transpose();
-  return squares.cwiseSqrt();
-}
-
 void take_shape(const NetSystem& system, const NetState& state, ForceDensityResult& result) {
   result.nodes = to_points(state.nodes);
   result.force_density = state.force_density;

@@ -343,4 +343,10 @@ Coordinates to_coordinates(const Points& points) {
   return nodes;
 }
 
+Vec3 coordinate_norm(const NetSystem& system, const NetState& state) {
+  Vec3 squares = Vec3::Zero();
+  for (const int node : system.free_nodes()) squares += state.nodes.row(node).cwiseAbs2().transpose();
+  return squares.cwiseSqrt();
+}
+
 }  // namespace tautline::formfinding

@@ -98,4 +98,7 @@ Coordinates nodal_forces(const Net& net, const VecX& force_density, const Coordi
 Points to_points(const Coordinates& nodes);
 Coordinates to_coordinates(const Points& points);
 
+/// |x|, |y|, |z| over the free nodes [m].
+Vec3 coordinate_norm(const NetSystem& system, const NetState& state);
+
 }  // namespace tautline::formfinding

@@ -43,10 +43,21 @@ Session::~Session() {
   SlepcFinalize();
 }
 
+bool started() {
+  int value = 0;
+  MPI_Initialized(&value);
+  return value != 0;
+}
+
+bool launched_by_mpirun() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
+    if (std::getenv(name) != nullptr) return true;
+  return false;
+}
+
 int rank() {
-  int value = 0, started = 0;
-  MPI_Initialized(&started);
-  if (started == 0) return 0;
+  int value = 0;
+  if (!started()) return 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &value);
   return value;
 }

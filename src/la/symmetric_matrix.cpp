@@ -1,5 +1,6 @@
 #include <tautline/la/symmetric_matrix.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -102,8 +103,25 @@ std::vector<double> SymmetricMatrix::absolute_row_sums() const {
   return {first, first + 3 * layout_.local};
 }
 
+std::vector<double> SymmetricMatrix::absolute_row_sums_of_blocks() const {
+  auto sums = absolute_row_sums();
+  for (std::size_t block = 0; block < sums.size(); block += 3) {
+    const double most = std::max({sums[block], sums[block + 1], sums[block + 2], 1e-300});
+    std::fill_n(sums.begin() + static_cast<long>(block), 3, most);
+  }
+  return sums;
+}
+
 void SymmetricMatrix::shift(double value) {
   check(MatShift(mat_, value), "MatShift");
+}
+
+void SymmetricMatrix::add_diagonal(double factor, const Vector& diagonal) {
+  if (factor == 0) return;
+  Vector scaled = Vector::like(diagonal);
+  scaled.copy(diagonal);
+  scaled.scale(factor);
+  check(MatDiagonalSet(mat_, scaled.handle(), ADD_VALUES), "MatDiagonalSet");
 }
 
 SymmetricMatrix SymmetricMatrix::shifted(double value) const {

@@ -51,6 +51,14 @@ Load scaled(const Load& load, double factor) {
     if (*motion) **motion *= factor;
   result.pressure *= factor;
   result.temperature_change *= factor;
+  if (load.temperature_gradient)
+    result.temperature_gradient = [gradient = load.temperature_gradient, factor](const Vec3& x) -> Vec3 {
+      return factor * gradient(x);
+    };
+  if (load.temperature_field)
+    result.temperature_field = [field = load.temperature_field, factor](const Vec3& x) {
+      return factor * field(x);
+    };
   return result;
 }
 

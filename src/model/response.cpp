@@ -190,7 +190,7 @@ std::map<std::string, GroupSummary> summarise_groups(const Model& model, const R
   add_all(model.springs, response.springs);
   for (const auto& point : model.masses) ++summaries[point.group].count;
   for (const auto& link : model.links)
-    if (link.group >= 0) ++summaries[link.group].count;
+    if (link.group >= 0 && model.groups[link.group].kind == ElementKind::link) ++summaries[link.group].count;
   clear_rounding(summaries);
   std::map<std::string, GroupSummary> result;
   for (std::size_t i = 0; i < summaries.size(); ++i) {

@@ -53,6 +53,13 @@ Shape tube(double mean_diameter, double thickness, double nu) {
   return {pi * (outer * outer - inner * inner) / 4, inertia, inertia, 2 * inertia, factor, factor};
 }
 
+/// Torsion by Bredt's formula, shear factor by Cowper (1966), both for thin walls.
+Shape square_tube(double side, double thickness, double nu) {
+  const double inertia = 2 * side * thickness * (side * side + thickness * thickness) / 3;
+  const double factor = 20 * (1 + nu) / (48 + 39 * nu);
+  return {4 * side * thickness, inertia, inertia, std::pow(side, 3) * thickness, factor, factor};
+}
+
 Shape i_section(const ISectionOptions& o) {
   const double web = o.height - 2 * o.flange_thickness, flanges = 2 * o.width * o.flange_thickness;
   const double area = flanges + web * o.web_thickness;
@@ -166,7 +173,14 @@ class SectionSetter {
   void operator()(const HingeSectionOptions&) const {}
   void operator()(const RectangleSectionOptions& o) const { set(o, rectangle(o.width, o.height)); }
   void operator()(const RoundSectionOptions& o) const { set(o, round_bar(o.diameter, poisson(o))); }
-  void operator()(const TubeSectionOptions& o) const { set(o, tube(o.diameter, o.thickness, poisson(o))); }
+  void operator()(const TubeSectionOptions& o) const {
+    set(o, tube(o.diameter, o.thickness, poisson(o)));
+    group_.tube = {
+        {o.diameter, o.diameter}, {o.thickness, o.thickness}, materials_.at(o.material), o.shear_flexible};
+  }
+  void operator()(const SquareTubeSectionOptions& o) const {
+    set(o, square_tube(o.side, o.thickness, poisson(o)));
+  }
   void operator()(const ISectionOptions& o) const { set(o, i_section(o)); }
   void operator()(const GeneralSectionOptions& o) const {
     const auto& m = materials_.at(o.material);
@@ -179,7 +193,7 @@ class SectionSetter {
     group_.thermal_expansion = o.thermal_expansion;
   }
   void operator()(const TaperedTubeSectionOptions& o) const {
-    group_.taper = tapered_tube(o, materials_);
+    group_.taper = group_.tube = tapered_tube(o, materials_);
     group_.beam = tapered_section(*group_.taper, 0.5);
     group_.thermal_expansion = group_.taper->material.thermal_expansion;
   }

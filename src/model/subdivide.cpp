@@ -60,6 +60,7 @@ class Subdivider {
     for (const auto& [name, parts] : options_.group_subdivisions) {
       const int group = old_.find_group(name);
       if (group < 0) throw ModelError(fmt::format("group_subdivisions: no group is called \"{}\"", name));
+      if (stays_whole(group)) continue;
       if (const auto kind = old_.groups[group].kind; !is_cable_like(kind) && kind != ElementKind::beam)
         throw ModelError(fmt::format(
             "group_subdivisions: \"{}\" is made of neither cables nor beams; use subdivisions", name));
@@ -73,10 +74,16 @@ class Subdivider {
     const auto add_sides = [&](const auto& facets) {
       for (const auto& facet : facets)
         for (int k = 0, n = facet.nodes.size(); k < n; ++k)
-          sides_[edge_of(facet.nodes[k], facet.nodes[(k + 1) % n])] = options_.subdivisions;
+          sides_[edge_of(facet.nodes[k], facet.nodes[(k + 1) % n])] =
+              stays_whole(facet.group) ? 1 : options_.subdivisions;
     };
     add_sides(old_.membranes);
     add_sides(old_.shells);
+  }
+
+  bool stays_whole(int group) const {
+    const auto& names = options_.tubes.groups;
+    return std::find(names.begin(), names.end(), old_.groups[group].name) != names.end();
   }
 
   int parts_of(const Edge& edge, const Group& group) const {
@@ -183,7 +190,10 @@ class Subdivider {
                     std::vector<std::vector<int>>& children) {
     for (std::size_t i = 0; i < from.size(); ++i) {
       parts_.clear();
-      split_facet(from[i].nodes);
+      if (stays_whole(from[i].group))
+        parts_.push_back(from[i].nodes);
+      else
+        split_facet(from[i].nodes);
       children.emplace_back();
       for (const auto& nodes : parts_) {
         Facet part = from[i];
@@ -398,7 +408,10 @@ void carry_initial_motion(const Model& structure, const SubdivideOptions& option
 
 }  // namespace
 
-Model subdivide(const Model& structure, const SubdivideOptions& options) {
+Model subdivide(const Model& described, const SubdivideOptions& options) {
+  const bool tubes = !options.tubes.groups.empty();
+  const Model replaced = tubes ? tubes_as_shells(described, options.tubes) : Model();
+  const Model& structure = tubes ? replaced : described;
   Model mesh = Subdivider(structure, options).run();
   if (!structure.initial.empty()) carry_initial_motion(structure, options, mesh);
   return mesh;

@@ -170,6 +170,7 @@ class Summary {
       std::string end = start.is_null() ? "" : "out of balance at start " + show(start, "N");
       for (const auto& [name, one, many] :
            {std::array{"failed_attempts", "attempt failed", "attempts failed"},
+            std::array{"descent_steps", "step downhill", "steps downhill"},
             std::array{"negative_pivots", "negative pivot", "negative pivots"}})
         if (number(member(stage, name)).value_or(0) != 0) end += ", " + count(name, one, many);
       if (const auto status = text(member(stage, "status")); !status.empty() && status != "done")

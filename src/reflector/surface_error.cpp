@@ -54,8 +54,27 @@ void add_triangle(const Triangle& t, double radius, std::vector<WeightedPoint>& 
   for (int i = 0; i < 3; ++i) add_triangle({t[i], middle[i], middle[(i + 2) % 3]}, radius, points);
 }
 
+/// Appends Gauss's rule of three points, exact to degree 5, of each part of a line that crosses the circle.
+void add_line(const Vec3& a, const Vec3& b, double radius, std::vector<WeightedPoint>& points) {
+  const double inner = std::min(distance_from_axis(a), distance_from_axis(b));
+  const double outer = std::max(distance_from_axis(a), distance_from_axis(b)), length = (b - a).norm();
+  if (inner <= radius && outer > radius && length > edge_size * radius) {
+    const Vec3 middle = (a + b) / 2;
+    add_line(a, middle, radius, points);
+    return add_line(middle, b, radius, points);
+  }
+  const double wing = std::sqrt(0.15);
+  for (const auto& [place, weight] :
+       {std::pair{0.5 - wing, 5. / 18}, {0.5, 8. / 18}, {0.5 + wing, 5. / 18}}) {
+    const Vec3 point = a + place * (b - a);
+    if (distance_from_axis(point) <= radius) points.push_back({point, weight * length});
+  }
+}
+
 std::vector<WeightedPoint> quadrature(const SurfaceSample& sample) {
   std::vector<WeightedPoint> points;
+  for (const auto& [a, b] : sample.lines)
+    add_line(sample.positions[a], sample.positions[b], limit(sample.radius), points);
   for (const auto& [a, b, c] : sample.triangles)
     add_triangle({sample.positions[a], sample.positions[b], sample.positions[c]}, limit(sample.radius),
                  points);
@@ -120,8 +139,9 @@ SurfaceError measure_surface(const Paraboloid& surface, const SurfaceSample& sam
   const auto nodes = nodes_inside(sample, sample.surface_nodes);
   const auto area = quadrature(sample);
   if (nodes.empty() || area.empty())
-    throw ModelError(sample.radius > 0 ? fmt::format("no cloth lies within {} m of the axis", sample.radius)
-                                       : std::string("there is no cloth to measure"));
+    throw ModelError(sample.radius > 0
+                         ? fmt::format("no cloth or net lies within {} m of the axis", sample.radius)
+                         : std::string("there is no cloth or net to measure"));
   SurfaceError e;
   e.radius = sample.radius > 0 ? sample.radius : 0;
   e.samples = static_cast<int>(nodes.size());

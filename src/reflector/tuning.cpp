@@ -44,6 +44,24 @@ SurfaceForm nodal_form(const Paraboloid& surface, const SurfaceSample& sample,
   return form;
 }
 
+/// Consistent weights of a straight part without cloth, by Simpson's rule, of half parts near the rim of the
+/// circle.
+void add_line_form(const Paraboloid& surface, const SurfaceSample& sample, const std::array<int, 2>& line,
+                   const std::map<int, int>& local, SurfaceForm& form,
+                   std::vector<Eigen::Triplet<double>>& entries) {
+  const Vec3 &a = sample.positions[line[0]], &b = sample.positions[line[1]];
+  for (const auto& [place, weight] : {std::pair{0.0, 1. / 6}, {0.5, 4. / 6}, {1.0, 1. / 6}}) {
+    const Vec3 point = (1 - place) * a + place * b;
+    if (!inside(sample, point)) continue;
+    const double share[2] = {1 - place, place}, part = weight * (b - a).norm();
+    for (int i = 0; i < 2; ++i) {
+      form.load[local.at(line[i])] += part * share[i] * deviation(surface, point);
+      for (int j = 0; j < 2; ++j)
+        entries.emplace_back(local.at(line[i]), local.at(line[j]), part * share[i] * share[j]);
+    }
+  }
+}
+
 /// Consistent weights: facets integrated at the middles of their sides, of quarter facets near the rim of the
 /// circle.
 SurfaceForm area_form(const Paraboloid& surface, const SurfaceSample& sample, const std::vector<int>& nodes) {
@@ -68,6 +86,7 @@ SurfaceForm area_form(const Paraboloid& surface, const SurfaceSample& sample, co
       }
     }
   }
+  for (const auto& line : sample.lines) add_line_form(surface, sample, line, local, form, entries);
   form.weight.setFromTriplets(entries.begin(), entries.end());
   return form;
 }
@@ -86,6 +105,58 @@ MatX deviation_influence(const Paraboloid& surface, const SurfaceSample& sample,
   return result;
 }
 
+/// Changes of length for changes of tension.
+struct TensionInverse {
+  MatX to_lengths;
+  /// Takes from a vector of tensions the part that no change of length makes; empty if there is none.
+  MatX unreachable;
+};
+
+/// Cords whose tensions obey equations of equilibrium among themselves, as those that alone hold a part of
+/// the frame, cannot have all tensions: their matrix is singular and the least changes of length are taken.
+TensionInverse invert(const MatX& tension) {
+  constexpr double singular = 1e-9;
+  const Eigen::PartialPivLU<MatX> lengths(tension);
+  if (lengths.rcond() > singular) return {lengths.inverse(), {}};
+  const Eigen::BDCSVD<MatX> parts(tension, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const VecX& values = parts.singularValues();
+  const auto rank = (values.array() > singular * values[0]).count();
+  const MatX reached = parts.matrixU().leftCols(rank);
+  return {
+      parts.matrixV().leftCols(rank) * values.head(rank).cwiseInverse().asDiagonal() * reached.transpose(),
+      MatX::Identity(tension.rows(), tension.cols()) - reached * reached.transpose()};
+}
+
+/// x^T h x / 2 + g^T x
+struct QuadraticForm {
+  MatX h;
+  VecX g;
+};
+
+/// The surface error for deviations d + j x. The mean shift is free: the weighted mean is taken out of the
+/// form.
+QuadraticForm about_the_mean(const SurfaceForm& form, const MatX& j) {
+  const MatX weighted = form.weight * j;
+  const VecX ones = form.weight * VecX::Ones(form.load.size());
+  const VecX mean_row = j.transpose() * ones;
+  return {j.transpose() * weighted - mean_row * mean_row.transpose() / ones.sum(),
+          j.transpose() * form.load - mean_row * (form.load.sum() / ones.sum())};
+}
+
+/// Changes of length for the least error and `weight` times the squares of the tensions' changes, without
+/// bounds. Where a length hardly changes any tension this is far less sensitive to rounding than to go by the
+/// tensions.
+VecX least_change(QuadraticForm in_lengths, const MatX& tension, double weight) {
+  in_lengths.h += weight * tension.transpose() * tension;
+  return -in_lengths.h.ldlt().solve(in_lengths.g);
+}
+
+/// To three digits: a weight that rounding does not touch.
+double rounded(double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
+  return value > 0 ? unit * std::round(value / unit) : value;
+}
+
 }  // namespace
 
 VecX sensitivity_change(const Paraboloid& surface, const SurfaceSample& sample, const TieInfluence& influence,
@@ -93,24 +164,78 @@ VecX sensitivity_change(const Paraboloid& surface, const SurfaceSample& sample, 
   const SurfaceForm form = options.objective == TuningObjective::nodes
                                ? nodal_form(surface, sample, influence.nodes)
                                : area_form(surface, sample, influence.nodes);
+  const MatX j = deviation_influence(surface, sample, influence);
   // In tie tensions t: length changes are S^-1 t and deviations d + J S^-1 t.
-  const Eigen::PartialPivLU<MatX> lengths(influence.tension);
-  const MatX to_lengths = lengths.inverse();
-  const MatX j = deviation_influence(surface, sample, influence) * to_lengths;
-  const MatX weighted = form.weight * j;
-  // The mean shift is free: take the weighted mean out of the form.
-  const VecX ones = form.weight * VecX::Ones(form.load.size());
-  const VecX mean_row = j.transpose() * ones;
-  MatX h = j.transpose() * weighted - mean_row * mean_row.transpose() / ones.sum();
-  const VecX g = j.transpose() * form.load - mean_row * (form.load.sum() / ones.sum());
+  const TensionInverse inverse = invert(influence.tension);
+  QuadraticForm in_tensions = about_the_mean(form, j * inverse.to_lengths);
   // Ties the measured surface hardly feels keep their tension, and tension does not run up for little gain.
-  h.diagonal().array() += options.regularisation * h.diagonal().mean();
+  const double mean_influence = rounded(in_tensions.h.diagonal().mean());
+  const double weight = options.regularisation * mean_influence;
   const VecX lower = (options.tension_min - influence.present_tension.array()).matrix();
   const VecX upper = (options.tension_max - influence.present_tension.array()).matrix();
-  const VecX change = to_lengths * minimise_in_box(h, g, lower, upper);
+  const bool regular = inverse.unreachable.size() == 0;
+  VecX change = least_change(about_the_mean(form, j), influence.tension, weight);
+  if (const VecX t = influence.tension * change;
+      !regular || !t.allFinite() || (t.array() < lower.array()).any() || (t.array() > upper.array()).any()) {
+    in_tensions.h.diagonal().array() += weight;
+    if (!regular) in_tensions.h += mean_influence * inverse.unreachable;
+    change = inverse.to_lengths * minimise_in_box(in_tensions.h, in_tensions.g, lower, upper);
+  }
   const double largest = change.cwiseAbs().maxCoeff();
   return largest > options.max_change ? VecX(change * (options.max_change / largest)) : change;
 }
+
+namespace {
+
+/// Primal active-set method from a feasible point: the free components go to their minimum or to the first
+/// bound in the way, which then holds; at the minimum the bound that the gradient leaves most is let go. Each
+/// set of held components comes once, so that it ends.
+void settle_in_box(const MatX& h, const VecX& g, const VecX& lower, const VecX& upper, VecX& x) {
+  const Eigen::Index n = g.size();
+  const double tolerance = 1e-12 * g.cwiseAbs().maxCoeff();
+  std::vector<bool> held(static_cast<std::size_t>(n));
+  const auto leaves = [&](Eigen::Index i, double slope) {  // how much the gradient points into the box
+    return x[i] <= lower[i] ? -slope : slope;
+  };
+  VecX gradient = h * x + g;
+  for (Eigen::Index i = 0; i < n; ++i)
+    held[i] = (x[i] <= lower[i] || x[i] >= upper[i]) && leaves(i, gradient[i]) <= 0;
+  for (Eigen::Index iteration = 0; iteration < 10 * n; ++iteration) {
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (!held[i]) free.push_back(i);
+    const VecX step = -h(free, free).ldlt().solve(gradient(free));
+    double part = 1;
+    Eigen::Index stop = -1;
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      const Eigen::Index i = free[k];
+      const double room = (step[k] < 0 ? lower[i] : upper[i]) - x[i];
+      if (step[k] == 0 || room / step[k] >= part) continue;
+      part = std::max(0.0, room / step[k]);
+      stop = i;
+    }
+    x(free) += part * step;
+    if (stop >= 0)
+      x[stop] =
+          step[std::find(free.begin(), free.end(), stop) - free.begin()] < 0 ? lower[stop] : upper[stop];
+    gradient = h * x + g;
+    if (stop >= 0) {
+      held[stop] = true;
+      continue;
+    }
+    double most = tolerance;
+    Eigen::Index let_go = -1;
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (held[i] && leaves(i, gradient[i]) > most) {
+        most = leaves(i, gradient[i]);
+        let_go = i;
+      }
+    if (let_go < 0) return;
+    held[let_go] = false;
+  }
+}
+
+}  // namespace
 
 VecX minimise_in_box(const MatX& h, const VecX& g, const VecX& lower, const VecX& upper) {
   VecX x = VecX::Zero(g.size()).cwiseMax(lower).cwiseMin(upper);
@@ -136,6 +261,7 @@ VecX minimise_in_box(const MatX& h, const VecX& g, const VecX& lower, const VecX
     x = next;
     if (!moved) break;
   }
+  settle_in_box(h, g, lower, upper, x);
   return x;
 }
 

@@ -1,5 +1,6 @@
 #include <tautline/reflector/umbrella.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -31,19 +32,23 @@ class Layout {
     const double azimuth = 2 * std::numbers::pi * s / net_.n_spokes();
     return {std::cos(azimuth), std::sin(azimuth)};
   }
-  /// Nodes of the front net in their order.
-  Points front() const;
+  /// Nodes of a net of the pattern on the surface, in their order.
+  Points nodes(NetPattern pattern) const;
 
  private:
   Vec3 on_surface(const Vec2& p) const { return {p.x(), p.y(), surface_.height(p.x(), p.y())}; }
   double tip_radius(int s) const;
-  Vec2 tip(int s) const { return tip_radius_[s % net_.n_spokes()] * direction(s); }
-  Vec2 ring(int s, int k, int t) const;
-  Vec2 peripheral(int s, int i) const {
-    return sagging(s, tip(s), tip(s + 1), options_.cord_sag, double(i) / net_.n_rings());
+  /// Radius of ring k on a spoke whose tip is at `tip`.
+  double ring_radius(double tip, int k) const {
+    const double part = double(k) / net_.n_rings();
+    return options_.hub_radius + part * (options_.last_ring * tip - options_.hub_radius);
   }
+  double place(int k, int i) const;
+  Vec2 tip(int s) const { return tip_radius_[s % net_.n_spokes()] * direction(s); }
+  Vec2 ring(NetPattern pattern, int s, int k, int t) const;
+  Vec2 peripheral(NetPattern pattern, int s, int i) const;
   Vec2 sagging(int s, const Vec2& a, const Vec2& b, double sag, double place) const;
-  Vec2 crossing(int s, int side) const;
+  Vec2 crossing(NetPattern pattern, int s, int side) const;
 
   const UmbrellaOptions& options_;
   const UmbrellaNet& net_;
@@ -81,34 +86,55 @@ Vec2 Layout::sagging(int s, const Vec2& a, const Vec2& b, double sag, double pla
   return (1 - place) * a + place * b + 4 * place * (1 - place) * sag * (b - a).norm() * inwards;
 }
 
-Vec2 Layout::ring(int s, int k, int t) const {
-  const double part = double(k) / net_.n_rings();
-  const auto on_spoke = [&](int spoke) -> Vec2 {
-    const double last = options_.last_ring * tip_radius_[spoke % net_.n_spokes()];
-    return (options_.hub_radius + part * (last - options_.hub_radius)) * direction(spoke);
-  };
-  const double sag = std::isnan(options_.ring_sag) ? options_.cord_sag : options_.ring_sag;
-  return sagging(s, on_spoke(s), on_spoke(s + 1), part * sag, double(t) / k);
+/// Place of the i-th node on ring k between the spokes, 0 to 1. Columns are straight, parallel to the
+/// bisector of the spokes, and begin where a ring meets a spoke.
+double Layout::place(int k, int i) const {
+  if (net_.front() == NetPattern::triangles || net_.front() == NetPattern::belts)
+    return double(i) / net_.parts(k);
+  const int y = net_.column(k, i);
+  const double off = ring_radius(tip_radius_.front(), std::abs(y)) / ring_radius(tip_radius_.front(), k);
+  return y == 0 ? 0.5 : 0.5 + (y > 0 ? 0.5 : -0.5) * off;
 }
 
-/// Where the two cords would cross if they were straight in plan.
-Vec2 Layout::crossing(int s, int side) const {
+Vec2 Layout::ring(NetPattern pattern, int s, int k, int t) const {
+  const auto on_spoke = [&](int spoke) -> Vec2 {
+    return ring_radius(tip_radius_[spoke % net_.n_spokes()], k) * direction(spoke);
+  };
+  const double otherwise = pattern == NetPattern::triangles ? options_.cord_sag : 0;
+  const double last = std::isnan(options_.ring_sag) ? otherwise : options_.ring_sag;
+  const double sag = pattern == NetPattern::belts ? 0 : last;
+  return sagging(s, on_spoke(s), on_spoke(s + 1), double(k) / net_.n_rings() * sag, place(k, t));
+}
+
+/// The peripheral cord is straight where no connector pulls at it.
+Vec2 Layout::peripheral(NetPattern pattern, int s, int i) const {
+  if (pattern == NetPattern::coarse_triangles && i % 2 == 1)
+    return (peripheral(pattern, s, i - 1) + peripheral(pattern, s, i + 1)) / 2;
+  const double sag = pattern == NetPattern::belts ? 0 : options_.cord_sag;
+  return sagging(s, tip(s), tip(s + 1), sag, place(net_.n_rings(), i));
+}
+
+/// Where the two cords would cross if they were straight in plan; without them, on the peripheral cord.
+Vec2 Layout::crossing(NetPattern pattern, int s, int side) const {
   const int n = net_.n_rings(), t = side == 0 ? 1 : n - 1;
-  const Vec2 from = ring(s, n, t), to = tip(s + side), other = ring(s, n, side * n);
+  if (pattern != NetPattern::triangles) return (tip(s + side) + peripheral(pattern, s, t)) / 2;
+  const Vec2 from = ring(pattern, s, n, t), to = tip(s + side), other = ring(pattern, s, n, side * n);
   Eigen::Matrix2d m;
-  m << to - from, other - peripheral(s, t);
+  m << to - from, other - peripheral(pattern, s, t);
   return from + m.inverse().eval().row(0).dot(other - from) * (to - from);
 }
 
-Points Layout::front() const {
+Points Layout::nodes(NetPattern pattern) const {
   const int n_spokes = net_.n_spokes(), n = net_.n_rings();
   Points nodes(net_.n_nodes());
   for (int s = 0; s < n_spokes; ++s) {
     nodes[net_.hub(s)] = on_surface(options_.hub_radius * direction(s));
     for (int k = 1; k <= n; ++k)
-      for (int t = 0; t < k; ++t) nodes[net_.ring(s, k, t)] = on_surface(ring(s, k, t));
-    for (int i = 0; i < n; ++i) nodes[net_.peripheral(s, i)] = on_surface(peripheral(s, i));
-    for (int side = 0; side < 2; ++side) nodes[net_.crossing(s, side)] = on_surface(crossing(s, side));
+      for (int t = 0; t < net_.parts(k); ++t) nodes[net_.ring(s, k, t)] = on_surface(ring(pattern, s, k, t));
+    for (int i = 0; i < net_.parts(n); ++i)
+      nodes[net_.peripheral(s, i)] = on_surface(peripheral(pattern, s, i));
+    for (int side = 0; net_.has_crossings() && side < 2; ++side)
+      nodes[net_.crossing(s, side)] = on_surface(crossing(pattern, s, side));
   }
   return nodes;
 }
@@ -117,7 +143,9 @@ Points Layout::front() const {
 class Builder {
  public:
   explicit Builder(const UmbrellaOptions& options)
-      : options_(options), net_(options.spokes, options.rings), layout_(options, net_) {}
+      : options_(options),
+        net_(options.spokes, options.rings, options.front_pattern),
+        layout_(options, net_) {}
 
   model::Model build();
 
@@ -129,8 +157,6 @@ class Builder {
   int add_group(const std::string& name, model::ElementKind kind);
   void add_nodes();
   void check_apart() const;
-  /// The same cords of the front and the rear net.
-  void add_pair(const std::string& name, const std::vector<Side>& sides);
   void add_nets();
   void add_ties();
   void add_cords();
@@ -167,11 +193,9 @@ int Builder::add_group(const std::string& name, model::ElementKind kind) {
 }
 
 void Builder::add_nodes() {
-  model_.nodes = layout_.front();
-  for (int i = 0; i < net_.n_nodes(); ++i) {
-    const Vec3 front = model_.nodes[i];
-    model_.nodes.emplace_back(front.x(), front.y(), -front.z());
-  }
+  model_.nodes = layout_.nodes(options_.front_pattern);
+  for (const Vec3& node : layout_.nodes(options_.rear_pattern.value_or(options_.front_pattern)))
+    model_.nodes.emplace_back(node.x(), node.y(), -node.z());
   for (const double radius : {options_.hub_radius, options_.joint_radius, options_.apex_radius})
     for (int s = 0; s < net_.n_spokes(); ++s) {
       const Vec2 p = radius * layout_.direction(s);
@@ -191,28 +215,24 @@ void Builder::check_apart() const {
       node.x(), node.y(), 2 * node.z(), options_.surface_height));
 }
 
-void Builder::add_pair(const std::string& name, const std::vector<Side>& sides) {
-  const int front_group = add_group("front_" + name, model::ElementKind::cable);
-  for (const auto& [i, j] : sides) model_.cables.push_back({{i, j}, front_group});
-  const int rear_group = add_group("rear_" + name, model::ElementKind::cable);
-  for (const auto& [i, j] : sides) model_.cables.push_back({{rear(i), rear(j)}, rear_group});
-}
-
+/// Front and rear groups of one name follow each other.
 void Builder::add_nets() {
-  auto net = net_.radials();
-  const auto rings = net_.rings();
-  if (!options_.separate_rings) net.insert(net.end(), rings.begin(), rings.end());
-  add_pair("net", net);
-  if (options_.separate_rings) add_pair("rings", rings);
-  add_pair("connectors", net_.connectors(false));
-  add_pair("end_connectors", net_.connectors(true));
-  add_pair("peripheral", net_.peripheral_cords(false));
-  add_pair("end_peripheral", net_.peripheral_cords(true));
-  add_pair("crossing_a_inner", net_.crossing_cords(CrossingCord::a_inner));
-  add_pair("crossing_a_outer", net_.crossing_cords(CrossingCord::a_outer));
-  add_pair("crossing_b_inner", net_.crossing_cords(CrossingCord::b_inner));
-  add_pair("crossing_b_outer", net_.crossing_cords(CrossingCord::b_outer));
-  if (options_.end_cords) add_pair("end_cords", net_.end_cords());
+  const auto front = net_.cords(options_.front_pattern, options_.separate_rings, options_.end_cords);
+  auto rear_cords = net_.cords(options_.rear_pattern.value_or(options_.front_pattern),
+                               options_.separate_rings, options_.end_cords);
+  const auto add = [&](const std::string& name, const std::vector<Side>& sides, int offset) {
+    const int group = add_group(name, model::ElementKind::cable);
+    for (const auto& [i, j] : sides) model_.cables.push_back({{i + offset, j + offset}, group});
+  };
+  for (const auto& [name, sides] : front) {
+    add("front_" + name, sides, 0);
+    const auto same = std::find_if(rear_cords.begin(), rear_cords.end(),
+                                   [&](const auto& group) { return group.name == name; });
+    if (same == rear_cords.end()) continue;
+    add("rear_" + name, same->sides, rear(0));
+    rear_cords.erase(same);
+  }
+  for (const auto& [name, sides] : rear_cords) add("rear_" + name, sides, rear(0));
 }
 
 void Builder::add_ties() {
@@ -273,6 +293,22 @@ void check_tips(const UmbrellaOptions& options) {
                                    options.apex_radius));
 }
 
+/// The rear net has a node under each of the front net, so not every pattern fits under every other.
+void check_patterns(const UmbrellaOptions& options) {
+  const NetPattern front = options.front_pattern, rear = options.rear_pattern.value_or(front);
+  if (front == NetPattern::coarse_triangles)
+    throw ModelError(
+        "front_pattern: coarse_triangles is a rear net's; the same with fewer rings is triangles");
+  if (rear == front || rear == NetPattern::belts) return;
+  if (rear != NetPattern::coarse_triangles || front != NetPattern::triangles)
+    throw ModelError(
+        "rear_pattern does not fit under front_pattern: it is the same, belts, or coarse_triangles under "
+        "triangles");
+  if (options.rings % 2 == 1)
+    throw ModelError(
+        fmt::format("rear_pattern: coarse_triangles needs an even number of rings, not {}", options.rings));
+}
+
 /// @throws ModelError where the numbers make no umbrella
 void check_umbrella(const UmbrellaOptions& options) {
   if (options.spokes < fewest_spokes)
@@ -288,6 +324,7 @@ void check_umbrella(const UmbrellaOptions& options) {
         "a spoke goes outwards: expected 0 < hub_radius < joint_radius < apex_radius, not {:g}, {:g}, {:g} m",
         options.hub_radius, options.joint_radius, options.apex_radius));
   check_tips(options);
+  check_patterns(options);
   if (!(options.last_ring > 0 && options.last_ring < 1))
     throw ModelError(fmt::format("last_ring must be between 0 and 1, not {:g}", options.last_ring));
   const auto check_sag = [](const char* name, double sag) {

@@ -1,16 +1,21 @@
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 
 #include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
+#include <tautline/core/expression.hpp>
 #include <tautline/element/beam.hpp>
 #include <tautline/element/membrane.hpp>
 #include <tautline/mesh/imported_mesh.hpp>
 #include <tautline/model/section.hpp>
 #include <tautline/reflector/perimeter_truss.hpp>
+#include <tautline/reflector/tensegrity_rim.hpp>
 #include <tautline/reflector/umbrella.hpp>
+#include <tautline/reflector/y_umbrella.hpp>
 
 #include "steps/context.hpp"
 
@@ -288,14 +293,32 @@ void check_load_place(const model::Model& model, const model::LoadOptions& optio
     if (options.line_force && !lines && selected.cables.empty())
       refuse(name, "line_force", "beams, cables, bars or edges");
     if (options.line_moment && !lines) refuse(name, "line_moment", "beams or edges");
-    if (!options.temperature_change) continue;
+    const bool by_place = !options.temperature_field.empty();
+    if (!options.temperature_change && !by_place) continue;
+    const char* key = by_place ? "temperature_field" : "temperature_change";
     const int group = model.find_group(name);
-    if (group < 0) refuse(name, "temperature_change", "elements of its own");
+    if (group < 0) refuse(name, key, "elements of its own");
     const auto& g = model.groups[group];
     if (g.thermal_expansion == 0 && g.membrane.thermal_expansion == 0 &&
         g.membrane.thermal_expansion_2 == 0 && g.shell.thermal_expansion == 0)
-      refuse(name, "temperature_change", "thermal_expansion in its section or material");
+      refuse(name, key, "thermal_expansion in its section or material");
   }
+}
+
+/// The formula of a temperature, checked where it will be asked for.
+std::function<double(const Vec3&)> temperature_field(const model::Model& model,
+                                                     const model::LoadOptions& options) {
+  if (options.temperature_field.empty()) return {};
+  const SpaceFormula field(options.temperature_field);
+  for (const int node : model.nodes_of(options.on)) {
+    const Vec3& x = model.nodes[node];
+    if (!std::isfinite(field(x)))
+      throw ModelError(fmt::format(
+          "{}:{}:{}: load \"{}\": temperature_field \"{}\" has no value at ({:.4g}, {:.4g}, {:.4g})",
+          options.where.file, options.where.line, options.where.column, options.name,
+          options.temperature_field, x.x(), x.y(), x.z()));
+  }
+  return field;
 }
 
 model::Load make_load(const model::Model& model, const model::LoadOptions& options) {
@@ -314,6 +337,11 @@ model::Load make_load(const model::Model& model, const model::LoadOptions& optio
   load.surface_force = options.surface_force.value_or(Vec3::Zero());
   load.pressure = options.pressure.value_or(0);
   load.temperature_change = options.temperature_change.value_or(0);
+  load.temperature_field = temperature_field(model, options);
+  if (load.temperature_field)
+    load.temperature_gradient = [field = SpaceFormula(options.temperature_field)](const Vec3& x) {
+      return field.gradient(x);
+    };
   load.acceleration = options.acceleration.value_or(Vec3::Zero());
   return load;
 }
@@ -324,6 +352,10 @@ model::Model build_structure(const deck::Deck& deck) {
   model::Model model;
   if (deck.truss()) {
     model = reflector::make_perimeter_truss(*deck.truss());
+  } else if (deck.tensegrity_rim()) {
+    model = reflector::make_tensegrity_rim(*deck.tensegrity_rim());
+  } else if (deck.y_umbrella()) {
+    model = reflector::make_y_umbrella(*deck.y_umbrella());
   } else if (deck.umbrella()) {
     model = reflector::make_umbrella(*deck.umbrella());
   } else {

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* format_name = "tautline-checkpoint";
-constexpr int format_version = 1;
+constexpr int format_version = 2;
 constexpr const char* point_file = "point.bin";
 
 double now_seconds() {
@@ -56,11 +56,17 @@ model::State state_of(const Json& json) {
 
 Json to_json(const assembly::Rest& rest) {
   const auto& a = rest.acting;
-  return {{"state", to_json(rest.state)}, {"force", flat(a.force)},
-          {"moment", flat(a.moment)},     {"line", flat(a.line)},
-          {"pressure", a.pressure},       {"temperature", a.temperature},
-          {"strain", a.strain},           {"acceleration", flat(std::vector<Vec3>{a.acceleration})},
-          {"turned", flat(rest.turned)},  {"stiffness_factor", rest.stiffness_factor}};
+  return {{"state", to_json(rest.state)},
+          {"force", flat(a.force)},
+          {"moment", flat(a.moment)},
+          {"line", flat(a.line)},
+          {"pressure", a.pressure},
+          {"element_temperature", a.temperature},
+          {"temperature_gradient", flat(a.temperature_gradient)},
+          {"strain", a.strain},
+          {"acceleration", flat(std::vector<Vec3>{a.acceleration})},
+          {"turned", flat(rest.turned)},
+          {"stiffness_factor", rest.stiffness_factor}};
 }
 
 assembly::Rest rest_of(const Json& json) {
@@ -68,11 +74,23 @@ assembly::Rest rest_of(const Json& json) {
                           unflat<Vec3>(json["moment"]),
                           unflat<Vec3>(json["line"]),
                           json["pressure"].get<std::vector<double>>(),
-                          json["temperature"].get<std::vector<double>>(),
+                          json["element_temperature"].get<std::vector<double>>(),
+                          unflat<Vec3>(json["temperature_gradient"]),
                           json["strain"].get<std::vector<double>>(),
                           unflat<Vec3>(json["acceleration"]).front()};
   return {state_of(json["state"]), std::move(acting), unflat<Vec3>(json["turned"]),
           json["stiffness_factor"].get<std::vector<double>>()};
+}
+
+Json to_json(const std::optional<analysis::ArcPlace>& arc) {
+  if (!arc) return nullptr;
+  return {arc->length, arc->first_length, arc->lambda_weight, arc->direction,
+          arc->points, arc->critical,     arc->bifurcations};
+}
+
+std::optional<analysis::ArcPlace> arc_of(const Json& json) {
+  if (json.is_null()) return std::nullopt;
+  return analysis::ArcPlace{json[0], json[1], json[2], json[3], json[4], json[5], json[6]};
 }
 
 Json to_json(const StagePoint& point) {
@@ -81,6 +99,7 @@ Json to_json(const StagePoint& point) {
           {"state", to_json(point.place.state)},
           {"lambda", point.place.lambda},
           {"driven_to", point.place.driven_to},
+          {"arc", to_json(point.arc)},
           {"entry", point.entry},
           {"way", point.way},
           {"critical", point.critical}};
@@ -93,6 +112,7 @@ StagePoint point_of(const Json& json) {
   point.place.state = state_of(json["state"]);
   point.place.lambda = json["lambda"];
   point.place.driven_to = json["driven_to"];
+  point.arc = arc_of(json["arc"]);
   point.entry = json["entry"];
   point.way = json["way"];
   point.critical = json["critical"];

@@ -18,10 +18,11 @@ using Json = nlohmann::ordered_json;
 
 /// A converged point within a stage of an equilibrium.
 struct StagePoint {
-  int stage = 0;              ///< index among the stages that the step makes
-  assembly::Rest start;       ///< the system when the stage began
-  assembly::Place place;      ///< where it is
-  Json entry, way, critical;  ///< what the step has to tell so far
+  int stage = 0;                          ///< index among the stages that the step makes
+  assembly::Rest start;                   ///< the system when the stage began
+  assembly::Place place;                  ///< where it is
+  std::optional<analysis::ArcPlace> arc;  ///< and how it goes on, of a path followed by its length
+  Json entry, way, critical;              ///< what the step has to tell so far
 };
 
 /// What a checkpoint holds.

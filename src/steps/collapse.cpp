@@ -113,8 +113,11 @@ Json follow_undisturbed(Context& context, const CollapseOptions& options,
   arc.load_factor = 2 * options.last;
   system.begin_stage(boundary_with(context, loads, linear));
   const auto path = follow_arc(context, "undisturbed", arc);
-  Json critical = critical_points_json(context, path, options.monitor);
-  for (auto& point : critical) {
+  draw_critical_points(context, path);
+  Json critical = Json::array();
+  for (const auto& met : path.critical) {
+    critical.push_back(critical_point_json(system, met, options.monitor));
+    auto& point = critical.back();
     point["lambda"] = to_digits(point["lambda"].get<double>() * linear, certain_digits);
     const bool limit = point["kind"] == "limit";
     entry[limit ? "limit_lambda" : "bifurcation_lambda"] = point["lambda"];

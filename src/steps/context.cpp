@@ -1,5 +1,6 @@
 #include "steps/context.hpp"
 
+#include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -77,6 +78,11 @@ void Context::set_system(model::Model mesh) {
   model::validate(mesh);
   system_ = std::make_unique<assembly::System>(std::move(mesh));
   workspace_ = std::make_unique<analysis::Workspace>(system_->new_matrix());
+  equilibrium_known = false;
+}
+
+bool Context::is_lost(const assembly::OutOfBalance& start) const {
+  return !equilibrium_known && start.before > system_->rounding_force() && start.before >= start.force / 2;
 }
 
 void Context::note_model() {
@@ -98,9 +104,13 @@ void Context::draw_any(const std::string& name, const std::string& caption, cons
   if (!pictures_ || !root_) return;
   const Stopwatch watch(output_seconds_);
   const std::string file = fmt::format("pictures/{}_{}.png", step_name, name);
+  Picture sized = picture;
+  const double scale = deck.output.picture_width / double{output::OutputOptions{}.picture_width};
+  sized.width = static_cast<int>(std::lround(scale * picture.width));
+  sized.height = static_cast<int>(std::lround(scale * picture.height));
   try {
     std::filesystem::create_directories(path("pictures"));
-    output::draw(picture, path(file));
+    output::draw(sized, path(file));
     results["pictures"].push_back({{"file", file}, {"caption", caption}, {"step", step_name}});
   } catch (const LibraryError& error) {
     progress.say(fmt::format("warning: no pictures: {}", error.what()));
@@ -159,19 +169,20 @@ std::function<void(double, int, double)> teller(Context& context, const std::str
 }  // namespace
 
 analysis::PathSummary follow(Context& context, const std::string& what, int increments,
-                             const std::function<void(const analysis::PathPoint&)>& converged, double start) {
+                             analysis::PathCallback callback, const analysis::PathStart& start) {
   auto options = context.deck.solver;
   options.increments = increments;
-  return analysis::follow_path(context.system(), context.workspace(), options,
-                               {teller(context, what), converged}, start);
+  callback.iteration = teller(context, what);
+  return analysis::follow_path(context.system(), context.workspace(), options, callback, start);
 }
 
 analysis::PathSummary follow_arc(Context& context, const std::string& what,
                                  const analysis::ArcLengthOptions& options,
-                                 const std::optional<analysis::Watch>& watch,
-                                 const std::function<void(const analysis::PathPoint&)>& converged) {
+                                 const std::optional<analysis::Watch>& watch, analysis::PathCallback callback,
+                                 const analysis::PathStart& start) {
+  callback.iteration = teller(context, what);
   return analysis::follow_arc(context.system(), context.workspace(), context.deck.solver, options, watch,
-                              {teller(context, what), converged});
+                              callback, start);
 }
 
 }  // namespace tautline::steps

@@ -40,6 +40,7 @@ class Context {
   std::vector<std::string> acting_loads;         ///< by name, since the last equilibrium
   Json results;                                  ///< the whole results.json
   Checkpoints checkpoints;                       ///< written as the run goes
+  bool equilibrium_known = false;                ///< whether the system stands in one or has come from one
   std::optional<StagePoint> resume;              ///< where the step in hand goes on, if it was begun before
 
   /// Time spent on pictures and files so far [s].
@@ -52,6 +53,9 @@ class Context {
   analysis::Workspace& workspace();
   bool has_system() const { return system_ != nullptr; }
   void set_system(model::Model mesh);
+  /// Whether a stage begins where no equilibrium is known, and not because of the loads that it brings: what
+  /// is out of balance without them is half or more of what is with them.
+  bool is_lost(const assembly::OutOfBalance& start) const;
   /// Another structure, or none and why; what was made of the one before is forgotten.
   void set_structure(model::Model structure, std::string why_none = {});
   /// The structure. @throws ModelError if there is none
@@ -104,16 +108,14 @@ Json run_step(Context& context, const RodShapingOptions& options);
 Json run_step(Context& context, const InverseOptions& options);
 
 /// Follows the path of a stage that was begun, with progress on the live line; stops at lambda = k /
-/// increments at least and calls `converged(point)` wherever it comes to rest. `start`: lambda where it
-/// stands.
+/// increments at least and tells `callback` wherever it comes to rest and what critical points it passes.
 analysis::PathSummary follow(Context& context, const std::string& what, int increments = 1,
-                             const std::function<void(const analysis::PathPoint&)>& converged = {},
-                             double start = 0);
+                             analysis::PathCallback callback = {}, const analysis::PathStart& start = {});
 
 /// Follows such a stage by the length of its path.
 analysis::PathSummary follow_arc(Context& context, const std::string& what,
                                  const analysis::ArcLengthOptions& options,
                                  const std::optional<analysis::Watch>& watch = {},
-                                 const std::function<void(const analysis::PathPoint&)>& converged = {});
+                                 analysis::PathCallback callback = {}, const analysis::PathStart& start = {});
 
 }  // namespace tautline::steps

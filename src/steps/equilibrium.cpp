@@ -64,8 +64,9 @@ void follow_parts(Context& context, const EquilibriumOptions& options, StageRunn
     entry["status"] = "not_converged";
     entry["reason"] = fmt::format(
         "stage \"{}\" {}. Try a stage in between that holds more (or release: automatic), a smaller "
-        "solver.min_step, control: arc_length if loads have passed a limit, or check the structure for a "
-        "mechanism (tautline check). See docs/when_it_does_not_converge.md",
+        "solver.min_step, control: arc_length if loads have passed a limit, fallback: descent if any "
+        "equilibrium beyond it will do, or check the structure for a mechanism (tautline check). See "
+        "docs/when_it_does_not_converge.md",
         parts[i].stage.name, runner.entries().back()["reason"].get<std::string>());
     break;
   }
@@ -76,7 +77,10 @@ void follow_parts(Context& context, const EquilibriumOptions& options, StageRunn
 
 Json run_step(Context& context, const EquilibriumOptions& options) {
   auto& system = context.system();
-  if (options.reset && !context.resume) system.reset();
+  if (options.reset && !context.resume) {
+    system.reset();
+    context.equilibrium_known = false;
+  }
   if (!context.resume) scatter(context, options.scatter);
   Json entry;
   entry["status"] = "done";

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -9,10 +10,12 @@
 #include <tautline/model/response.hpp>
 #include <tautline/model/section.hpp>
 
+#include "steps/balanced_form.hpp"
 #include "steps/context.hpp"
 #include "steps/form_methods.hpp"
 #include "steps/frame_balance.hpp"
 #include "steps/length_errors.hpp"
+#include "steps/rear_form.hpp"
 #include "steps/reflector_form.hpp"
 #include "steps/summaries.hpp"
 
@@ -148,19 +151,24 @@ std::vector<std::string> settled_groups(const Context& context, const FormFindin
   auto settled = net.groups;
   settled.insert(settled.end(), net.cloth.begin(), net.cloth.end());
   settled.insert(settled.end(), options.ties.begin(), options.ties.end());
-  if (context.surface) {
-    const auto completed = completed_groups(net);
-    settled.insert(settled.end(), completed.begin(), completed.end());
-  }
+  if (!context.surface) return settled;
+  const auto completed = completed_groups(net);
+  settled.insert(settled.end(), completed.begin(), completed.end());
+  if (rear_form(context, options) != RearForm::mirrored)
+    for (const auto& group : rear_net_groups(context.structure)) settled.push_back(group);
   return settled;
 }
 
 /// Moves the structure to the shape found and gives all its parts their state.
-void hand_over(Context& context, const FormFindingOptions& options, const FormNet& net, const Form& found) {
+void hand_over(Context& context, const FormFindingOptions& options, const FormNet& net, const Form& found,
+               const CoupledForm* coupled = nullptr) {
   take_cables(context.structure, net, found);
   take_film(context.structure, net, found);
   take_ties(context.structure, net, found, options.ties);
-  if (context.surface) complete_reflector(context, net, found);
+  if (coupled != nullptr)
+    take_rear(context, *coupled);
+  else if (context.surface)
+    complete_reflector(context, net, found);
   refresh_other_groups(context, settled_groups(context, options, net));
 }
 
@@ -217,18 +225,25 @@ Form find_with_frame(Context& context, const FormFindingOptions& options, FormNe
 
 Json run_step(Context& context, const FormFindingOptions& options) {
   auto net = extract_net(context, options);
+  if (options.method == FormMethod::balanced) net.force_density = balancing(context, net);
   Json frame;
-  const auto found = options.frame != FrameKind::rigid ? find_with_frame(context, options, net, frame)
-                                                       : find_form(context, options, net);
+  std::optional<CoupledForm> coupled;
+  if (context.surface && rear_form(context, options) != RearForm::mirrored)
+    coupled = find_coupled(context, options, net);
+  const auto found = coupled                             ? coupled->front
+                     : options.frame != FrameKind::rigid ? find_with_frame(context, options, net, frame)
+                                                         : find_form(context, options, net);
   Json entry{{"status", found.converged ? "done" : "not_converged"}, {"reason", found.reason}};
   entry.update(found.details);
   if (!frame.is_null()) entry.update(frame);
+  if (coupled) entry["rear"] = coupled->details;
   if (!found.warnings.empty()) entry["warnings"] = found.warnings;
   for (const auto& warning : found.warnings) context.progress.say("warning: " + warning);
   draw_convergence(context, found);
   if (!found.converged && !found.details.contains("worst")) return entry;
   if (!found.converged && context.surface) return entry;
-  if (options.frame == FrameKind::rigid) hand_over(context, options, net, found);
+  if (options.frame == FrameKind::rigid)
+    hand_over(context, options, net, found, coupled ? &*coupled : nullptr);
   entry["groups"] = found_groups_json(context.structure);
   if (!context.surface)
     if (const Json supports = support_forces(context.structure, net, found); !supports.empty())

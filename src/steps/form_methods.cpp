@@ -45,6 +45,11 @@ VecX drawn_force_density(const model::Model& structure, const FormNet& form, dou
   return q;
 }
 
+/// The net's own force densities, or else as drawn.
+VecX given_force_density(const model::Model& structure, const FormNet& form, double otherwise) {
+  return form.force_density.size() > 0 ? form.force_density : drawn_force_density(structure, form, otherwise);
+}
+
 VecX axial_stiffness(const model::Model& structure, const FormNet& form) {
   VecX stiffness(form.cables.size());
   for (std::size_t b = 0; b < form.cables.size(); ++b)
@@ -84,6 +89,12 @@ Form begin(const Found& found) {
   return result;
 }
 
+Json norms_json(const std::vector<Vec3>& norms) {
+  Json list = Json::array();
+  for (const auto& n : norms) list.push_back(Json::array({n.x(), n.y(), n.z()}));
+  return list;
+}
+
 const char* name_of(formfinding::TensionMethod method) {
   using enum formfinding::TensionMethod;
   return method == position_newton ? "position_newton"
@@ -119,9 +130,7 @@ Form find_by_tensions(const Context& context, const FormFindingOptions& options,
   result.details = {{"solver", name_of(found.method)},
                     {"iterations", found.iterations},
                     {"constraint_residual", found.constraint_residual}};
-  result.details["coordinate_norm"] = Json::array();
-  for (const auto& n : found.coordinate_norm)
-    result.details["coordinate_norm"].push_back(Json::array({n.x(), n.y(), n.z()}));
+  result.details["coordinate_norm"] = norms_json(found.coordinate_norm);
   result.details["step_relaxation"] = found.step_relaxation;
   result.details["out_of_balance"] = found.out_of_balance;
   if (found.condition_number > 0) result.details["condition_number"] = found.condition_number;
@@ -130,7 +139,7 @@ Form find_by_tensions(const Context& context, const FormFindingOptions& options,
 
 Form find_linear(const Context& context, const FormFindingOptions& options, const FormNet& form) {
   const auto found = formfinding::find_linear_form(
-      form.net, drawn_force_density(context.structure, form, options.initial_force_density), form.surface);
+      form.net, given_force_density(context.structure, form, options.initial_force_density), form.surface);
   Form result;
   result.converged = true;
   result.reason = "one linear solve";
@@ -231,14 +240,15 @@ Form find_with_constraints(const Context& context, const FormFindingOptions& opt
   ConstrainedNet problem{form.net,
                          form.surface,
                          demands(structure, options, form),
-                         drawn_force_density(structure, form, options.initial_force_density),
+                         given_force_density(structure, form, options.initial_force_density),
                          std::vector<bool>(form.cables.size(), false),
                          {},
                          {},
                          axial_stiffness(structure, form),
                          form.triangles,
                          form.surface_stress};
-  if (options.method == FormMethod::linear) problem.held.assign(form.cables.size(), true);
+  if (options.method == FormMethod::linear || options.method == FormMethod::balanced)
+    problem.held.assign(form.cables.size(), true);
   auto held = options.hold;
   for (const auto& group : form.groups)
     if (keeps_force_density(context, options, group)) held.push_back(group);
@@ -255,6 +265,7 @@ Form find_with_constraints(const Context& context, const FormFindingOptions& opt
   result.details = {{"solver", found.method},
                     {"iterations", found.iterations},
                     {"constraint_residual", found.residual},
+                    {"coordinate_norm", norms_json(found.coordinate_norm)},
                     {"step_relaxation", found.step_relaxation},
                     {"out_of_balance", found.out_of_balance},
                     {"constraints", found.n_rows}};
@@ -378,6 +389,7 @@ Form find_film(const Context& context, const FormFindingOptions& options, const 
 Form find_form(const Context& context, const FormFindingOptions& options, const FormNet& form) {
   switch (options.method) {
     case FormMethod::linear:
+    case FormMethod::balanced:
       return form.triangles.empty() ? find_linear(context, options, form)
                                     : find_with_constraints(context, options, form);
     case FormMethod::constraints:

@@ -24,6 +24,7 @@ struct FormNet {
   VecX surface_stress;                        ///< of each triangle [N/m]
   std::unique_ptr<formfinding::Surface> own_surface;
   const formfinding::Surface* surface = nullptr;  ///< the reflector's, or own_surface; or null
+  VecX force_density;  ///< of each branch, in place of the drawn one [N/m]; empty: as drawn
 
   double stiffness(const model::Model& structure, std::size_t branch) const;
   /// Branches of the named groups, in the order of the names. @throws ModelError for a group outside the net

@@ -59,16 +59,32 @@ output::Curve curve_of(const Json& points, const Watched& watched, const std::st
 
 }  // namespace
 
-Json critical_points_json(Context& context, const analysis::PathSummary& path,
-                          const std::vector<std::string>& monitors) {
-  Json list = Json::array();
+Json critical_point_json(assembly::System& system, const analysis::CriticalPoint& point,
+                         const std::vector<std::string>& monitors) {
+  Json entry{{"lambda", to_digits(point.lambda, certain_digits(point.kind))},
+             {"kind", name_of(point.kind)},
+             {"negative_before", point.negative_before},
+             {"negative_after", point.negative_after},
+             {"load_share", point.load_share < 1e-4 ? 0.0 : rounded(point.load_share)}};
+  if (monitors.empty()) return entry;
+  const auto there = system.keep();
+  system.return_to(*point.kept);
+  Json values = monitors_json(system, monitors);
+  for (auto& [name, value] : values.items())
+    for (auto& [kind, triple] : value.items())
+      for (auto& component : triple) component = to_digits(component.get<double>(), 6);
+  entry["monitors"] = values;
+  system.return_to(*there);
+  return entry;
+}
+
+void draw_critical_points(Context& context, const analysis::PathSummary& path, std::size_t first) {
+  if (path.critical.empty()) return;
   auto& system = context.system();
-  if (path.critical.empty()) return list;
   const auto there = system.keep();
   auto grid = field_grid(context, model::evaluate_response(system.model(), system.state()));
   grid.point_fields.clear();
-  for (const auto& point : path.critical) {
-    const auto number = list.size() + 1;
+  for (auto number = first; const auto& point : path.critical) {
     system.return_to(*point.kept);
     const Points shape = display_shape(system, point.mode);
     const std::string title =
@@ -76,22 +92,11 @@ Json critical_points_json(Context& context, const analysis::PathSummary& path,
     grid.point_fields.push_back(mode_field(title, shape));
     if (context.draws() && number <= 3)
       draw_mode(context, shape, fmt::format("critical_{}", number), title, title + "; light grey: the state");
-    list.push_back({{"lambda", to_digits(point.lambda, certain_digits(point.kind))},
-                    {"kind", name_of(point.kind)},
-                    {"negative_before", point.negative_before},
-                    {"negative_after", point.negative_after},
-                    {"load_share", point.load_share < 1e-4 ? 0.0 : rounded(point.load_share)}});
-    if (!monitors.empty()) {
-      Json values = monitors_json(system, monitors);
-      for (auto& [name, value] : values.items())
-        for (auto& [kind, triple] : value.items())
-          for (auto& entry : triple) entry = to_digits(entry.get<double>(), 6);
-      list.back()["monitors"] = values;
-    }
+    ++number;
   }
   system.return_to(*there);
-  context.write_fields(context.step_name + " critical points", grid);
-  return list;
+  const std::string name = context.step_name + " critical points";
+  context.write_fields(first == 1 ? name : fmt::format("{} from {} on", name, first), grid);
 }
 
 void draw_path(Context& context, const Json& path, const Json& critical) {

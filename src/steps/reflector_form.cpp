@@ -14,6 +14,14 @@ bool is_front(const std::string& name) {
   return name.rfind(front_prefix, 0) == 0;
 }
 
+std::vector<std::string> cables_called(const model::Model& structure, const std::string& prefix) {
+  std::vector<std::string> names;
+  for (const auto& group : structure.groups)
+    if (group.kind == model::ElementKind::cable && group.name.rfind(prefix, 0) == 0)
+      names.push_back(group.name);
+  return names;
+}
+
 std::string rear_of(const std::string& name) {
   return rear_prefix + name.substr(front_prefix.size());
 }
@@ -59,10 +67,11 @@ VecX with_cloth(const FormNet& net, const Form& found) {
 }  // namespace
 
 std::vector<std::string> front_net_groups(const model::Model& structure) {
-  std::vector<std::string> names;
-  for (const auto& group : structure.groups)
-    if (group.kind == model::ElementKind::cable && is_front(group.name)) names.push_back(group.name);
-  return names;
+  return cables_called(structure, front_prefix);
+}
+
+std::vector<std::string> rear_net_groups(const model::Model& structure) {
+  return cables_called(structure, rear_prefix);
 }
 
 std::vector<std::string> completed_groups(const FormNet& net) {

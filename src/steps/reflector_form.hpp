@@ -9,6 +9,9 @@ namespace tautline::steps {
 /// Cable groups that are the front net, `front_...`: what form-finding takes unless it is told.
 std::vector<std::string> front_net_groups(const model::Model& structure);
 
+/// Cable groups that are the rear net, `rear_...`.
+std::vector<std::string> rear_net_groups(const model::Model& structure);
+
 /// The groups that complete_reflector gives their state: ties, and the group `rear_x` of each `front_x`.
 std::vector<std::string> completed_groups(const FormNet& net);
 

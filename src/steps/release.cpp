@@ -52,13 +52,15 @@ class Search {
     auto& system = context_.system();
     const auto before = system.rest();
     context_.acting_loads = hold.empty() ? loads_ : Names{};
-    system.begin_stage(context_.boundary(hold, true));
+    const auto start = system.begin_stage(context_.boundary(hold, true));
     auto options = context_.deck.solver;
     options.min_step = std::max(options.min_step, shortest);
-    const auto path = analysis::follow_path(system, context_.workspace(), options);
+    const auto path =
+        analysis::follow_path(system, context_.workspace(), options, {}, {0, context_.is_lost(start), {}});
     result_.attempts.push_back({{"hold", hold},
                                 {"reached", path.reached},
                                 {"newton_iterations", path.newton_iterations},
+                                {"descent_steps", path.descent_steps},
                                 {"lambda", path.lambda()}});
     context_.progress.say(fmt::format("{} | release, held [{}]: {}", context_.step_name, join(hold),
                                       path.reached ? "reached" : "failed"));

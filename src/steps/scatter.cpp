@@ -16,16 +16,13 @@ double spread(std::mt19937_64& random) {
   return static_cast<double>(random() >> 11) * unit - 1;
 }
 
-}  // namespace
-
-void scatter(Context& context, const ScatterOptions& options) {
-  if (options.position == 0) return;
+/// Of all free nodes of the system's mesh, as increments of its unknowns.
+la::Vector displacements(Context& context, double largest, std::mt19937_64& random) {
   auto& system = context.system();
   system.begin_stage(context.boundary({}, false));  // tells what is held
   model::Model moved = context.structure;
-  std::mt19937_64 random(static_cast<std::uint64_t>(options.seed));
   for (auto& node : moved.nodes)
-    for (int c = 0; c < 3; ++c) node[c] += options.position * spread(random);
+    for (int c = 0; c < 3; ++c) node[c] += largest * spread(random);
   const Points there = model::subdivide(moved, context.subdivide).nodes;
   const Points here = model::subdivide(context.structure, context.subdivide).nodes;
   const auto& map = system.dof_map();
@@ -34,17 +31,35 @@ void scatter(Context& context, const ScatterOptions& options) {
   std::vector<double> own(static_cast<std::size_t>(way.local_size()), 0.0);
   for (std::size_t node = 0; node < map.displacement_block.size(); ++node) {
     const int block = map.displacement_block[node];
-    if (block < 0 || map.rotational[node] || !map.owns(block)) continue;
+    if (block < 0 || !map.owns(block)) continue;
     for (int c = 0; c < 3; ++c)
       if (!system.held()[static_cast<std::size_t>(3 * block + c)])
         own[static_cast<std::size_t>(3 * (block - map.layout.first) + c)] = there[node][c] - here[node][c];
   }
   way.write(own);
-  system.move(way);
+  return way;
+}
+
+}  // namespace
+
+void scatter(Context& context, const ScatterOptions& options) {
+  if (options.position == 0 && options.tension == 0) return;
+  auto& system = context.system();
+  std::mt19937_64 random(static_cast<std::uint64_t>(options.seed));
+  if (options.position > 0) system.move(displacements(context, options.position, random));
+  if (options.tension > 0) {
+    const auto wanted = system.strains();
+    auto strains = wanted;
+    for (double& strain : strains) strain *= 1 + options.tension * spread(random);
+    system.set_state(system.state(), strains);
+    system.set_target_strains(wanted);
+  }
   system.commit();
+  context.equilibrium_known = false;
   context.progress.say(
-      fmt::format("{} | free nodes of nets displaced by up to {:g} m in each coordinate, seed {}",
-                  context.step_name, options.position, options.seed));
+      fmt::format("{} | free nodes displaced by up to {:g} m in each coordinate, initial strains of cables "
+                  "changed by up to {:g} of themselves, seed {}",
+                  context.step_name, options.position, options.tension, options.seed));
 }
 
 }  // namespace tautline::steps

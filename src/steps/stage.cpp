@@ -64,6 +64,7 @@ Json StageRunner::entry_of(const StageOptions& stage, const assembly::OutOfBalan
           {"newton_iterations", path.newton_iterations},
           {"lambda_steps", path.points.size()},
           {"failed_attempts", path.failed_attempts},
+          {"descent_steps", path.descent_steps},
           {"lambda", path.lambda()},
           {"negative_pivots", path.inertia.negative},
           {"null_pivots", path.inertia.null},
@@ -73,8 +74,8 @@ Json StageRunner::entry_of(const StageOptions& stage, const assembly::OutOfBalan
           {"wall_seconds", seconds}};
 }
 
-analysis::PathSummary StageRunner::walk(const std::string& what,
-                                        const std::function<void(const analysis::PathPoint&)>& converged) {
+analysis::PathSummary StageRunner::walk(const std::string& what, const analysis::PathCallback& callback,
+                                        const analysis::PathStart& start) {
   auto& system = context_.system();
   auto arc = options_.arc_length;
   arc.load_factor = options_.until.load_factor;
@@ -91,7 +92,7 @@ analysis::PathSummary StageRunner::walk(const std::string& what,
     watch.emplace(analysis::Watch{system.mean_motion(nodes, direction), mean});
     arc.displacement = options_.until.displacement;
   }
-  return follow_arc(context_, what, arc, watch, converged);
+  return follow_arc(context_, what, arc, watch, callback, start);
 }
 
 void StageRunner::note(const analysis::PathPoint& point) {
@@ -113,59 +114,78 @@ void StageRunner::save_point(Checkpoint& bookmark, bool always) {
 }
 
 analysis::PathSummary StageRunner::follow_stage(const StageOptions& stage, bool is_last,
+                                                const assembly::OutOfBalance& imbalance,
                                                 Checkpoint& bookmark) {
   const bool walks = is_last && options_.control == Control::arc_length;
-  double start = 0;
+  analysis::PathStart start;
+  start.unknown = options_.fallback == Fallback::automatic && context_.is_lost(imbalance);
   if (context_.resume) {
     context_.system().return_to(context_.resume->place);
-    start = context_.resume->place.lambda;
+    start = {context_.resume->place.lambda, false, context_.resume->arc};
     context_.resume.reset();
   }
-  const auto converged = [&](const analysis::PathPoint& point) {
+  analysis::PathCallback callback;
+  callback.converged = [&](const analysis::PathPoint& point) {
     if (is_last) note(point);
-    if (!walks && point.lambda < 1) save_point(bookmark, false);
+    bookmark.point->arc = point.arc;
+    if (walks || point.lambda < 1) save_point(bookmark, false);
   };
-  if (walks) return walk(stage.name, converged);
-  return follow(context_, stage.name, is_last ? options_.increments : 1, converged, start);
+  callback.critical = [&](const analysis::CriticalPoint& point) {
+    critical_.push_back(critical_point_json(context_.system(), point, options_.monitor));
+    critical_.back()["stage"] = stage.name;
+  };
+  if (walks) return walk(stage.name, callback, start);
+  return follow(context_, stage.name, is_last ? options_.increments : 1, callback, start);
 }
 
-Json StageRunner::relax_if_asked(const StageOptions& stage, analysis::PathSummary& path) {
-  if (path.reached || options_.fallback != Fallback::dynamic_relaxation ||
-      options_.control == Control::arc_length)
-    return nullptr;
+/// By descent or dynamic relaxation, then Newton's method, from where the path ended.
+analysis::DescentSummary StageRunner::leave_path(const std::string& name, Json& told) {
   auto& system = context_.system();
-  context_.progress.say(fmt::format("{} | {}: Newton's method gave up at lambda = {:.4g}; dynamic relaxation",
-                                    context_.step_name, stage.name, path.lambda()));
-  system.commit();
-  system.set_lambda(1);
-  const auto relaxed = analysis::relax(system, context_.workspace(), {}, [&](int step, double residual) {
-    context_.progress.update(fmt::format("{} | {}: dynamic relaxation, step {}, residual {:.1e}",
-                                         context_.step_name, stage.name, step, residual));
-  });
+  const bool relaxes = options_.fallback == Fallback::dynamic_relaxation;
+  const std::string way = relaxes ? "dynamic relaxation" : "downhill in energy";
+  const auto tell = [&](int step, double residual) {
+    context_.progress.update(
+        fmt::format("{} | {}: {}, step {}, residual {:.1e}", context_.step_name, name, way, step, residual));
+  };
   auto polish = context_.deck.solver;
   polish.max_iterations = std::max(polish.max_iterations, analysis::NewtonOptions{}.max_iterations);
-  auto newton = analysis::solve_newton(system, context_.workspace(), polish);
-  Json told{{"gave_up", path.reason},
-            {"steps", relaxed.steps},
-            {"peaks", relaxed.peaks},
-            {"residual", rounded(relaxed.residual)},
-            {"newton_iterations", newton.newton_iterations()}};
-  path.newton_iterations += newton.newton_iterations();
-  if (!newton.converged()) {
-    path.reason += fmt::format(
-        "; dynamic relaxation then came to {:.1e} of the reference force in {} steps, from where {}",
-        relaxed.residual, relaxed.steps, newton.reason);
+  if (!relaxes) return analysis::descend(system, context_.workspace(), polish, tell);
+  const auto relaxed = analysis::relax(system, context_.workspace(), {}, tell);
+  told["peaks"] = relaxed.peaks;
+  return {relaxed.steps, relaxed.residual, analysis::solve_newton(system, context_.workspace(), polish)};
+}
+
+Json StageRunner::fall_back(const StageOptions& stage, analysis::PathSummary& path) {
+  const bool asked =
+      options_.fallback == Fallback::descent || options_.fallback == Fallback::dynamic_relaxation;
+  if (path.reached || !asked || options_.control == Control::arc_length) return nullptr;
+  auto& system = context_.system();
+  const std::string way =
+      options_.fallback == Fallback::dynamic_relaxation ? "dynamic relaxation" : "descent in energy";
+  context_.progress.say(fmt::format("{} | {}: Newton's method gave up at lambda = {:.4g}; {}",
+                                    context_.step_name, stage.name, path.lambda(), way));
+  system.commit();
+  system.set_lambda(1);
+  Json told{{"gave_up", path.reason}};
+  auto end = leave_path(stage.name, told);
+  told["steps"] = end.steps;
+  told["residual"] = rounded(end.residual);
+  told["newton_iterations"] = end.newton.newton_iterations();
+  path.newton_iterations += end.newton.newton_iterations();
+  if (!end.newton.converged()) {
+    path.reason += fmt::format("; {} then came to {:.1e} of the reference force in {} steps, from where {}",
+                               way, end.residual, end.steps, end.newton.reason);
     system.roll_back();
     system.set_lambda(path.lambda());
     return told;
   }
   system.commit();
   path.reached = true;
-  path.reason = fmt::format("reached by dynamic relaxation in {} steps and {} Newton iterations",
-                            relaxed.steps, newton.newton_iterations());
+  path.reason = fmt::format("reached by {} in {} steps and {} Newton iterations", way, end.steps,
+                            end.newton.newton_iterations());
   analysis::count_negative(system, context_.workspace());
   path.inertia = context_.workspace().solver.inertia();
-  path.points.push_back({1, std::move(newton), path.inertia.negative});
+  path.points.push_back({1, std::move(end.newton), path.inertia.negative, {}});
   return told;
 }
 
@@ -185,18 +205,22 @@ bool StageRunner::run(const StageOptions& stage, const std::vector<std::string>&
   context_.progress.say(fmt::format("{} | {}: out-of-balance at the start {:.3e} N", context_.step_name,
                                     stage.name, start.force));
   if (!anew && !entries_.empty()) save_point(bookmark, true);
-  auto path = follow_stage(stage, is_last, bookmark);
-  const Json relaxation = relax_if_asked(stage, path);
+  auto path = follow_stage(stage, is_last, start, bookmark);
+  const Json left = fall_back(stage, path);
   watch.reset();
-  for (auto& point : critical_points_json(context_, path, options_.monitor)) {
-    point["stage"] = stage.name;
-    critical_.push_back(point);
-  }
+  if (path.reached) context_.equilibrium_known = true;
+  if (path.reached && path.descent_steps > 0)
+    context_.progress.say(
+        fmt::format("{} | {}: Newton's method failed from this start; {} steps downhill in energy led to the "
+                    "equilibrium",
+                    context_.step_name, stage.name, path.descent_steps));
+  draw_critical_points(context_, path, critical_.size() - path.critical.size() + 1);
   if ((!path.reached && path.points.empty()) || path.inertia.null > 0)
     if (const auto mechanism = assembly::find_mechanism(system, context_.workspace()))
       throw ModelError(fmt::format("stage \"{}\": {}", stage.name, mechanism->text));
   entries_.push_back(entry_of(stage, start, path, seconds));
-  if (!relaxation.is_null()) entries_.back()["dynamic_relaxation"] = relaxation;
+  if (!left.is_null())
+    entries_.back()[options_.fallback == Fallback::descent ? "descent" : "dynamic_relaxation"] = left;
   return path.reached;
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <tautline/analysis/descent.hpp>
+
 #include "steps/context.hpp"
 
 namespace tautline::steps {
@@ -26,12 +28,15 @@ class StageRunner {
   const assembly::Boundary& boundary() const { return boundary_; }
 
  private:
-  analysis::PathSummary follow_stage(const StageOptions& stage, bool is_last, Checkpoint& bookmark);
-  analysis::PathSummary walk(const std::string& what,
-                             const std::function<void(const analysis::PathPoint&)>& converged);
+  analysis::PathSummary follow_stage(const StageOptions& stage, bool is_last,
+                                     const assembly::OutOfBalance& imbalance, Checkpoint& bookmark);
+  analysis::PathSummary walk(const std::string& what, const analysis::PathCallback& callback,
+                             const analysis::PathStart& start);
   void note(const analysis::PathPoint& point);
   void save_point(Checkpoint& bookmark, bool always);
-  Json relax_if_asked(const StageOptions& stage, analysis::PathSummary& path);
+  analysis::DescentSummary leave_path(const std::string& name, Json& told);
+  /// What the deck asks for where the path ends early; null if it asks for nothing.
+  Json fall_back(const StageOptions& stage, analysis::PathSummary& path);
   Json entry_of(const StageOptions& stage, const assembly::OutOfBalance& start,
                 const analysis::PathSummary& path, double seconds) const;
 

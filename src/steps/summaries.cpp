@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -120,10 +121,17 @@ reflector::SurfaceSample surface_sample(Context& context) {
   const auto& model = context.system().model();
   reflector::SurfaceSample sample;
   sample.positions = model::positions(model, context.system().state());
-  const auto cloth = model.select("cloth");
-  sample.surface_nodes = cloth.nodes;
-  for (const int i : cloth.membranes)
-    for (const auto& triangle : model.membranes[i].nodes.triangles()) sample.triangles.push_back(triangle);
+  if (model.find_group("cloth") >= 0) {
+    const auto cloth = model.select("cloth");
+    sample.surface_nodes = cloth.nodes;
+    for (const int i : cloth.membranes)
+      for (const auto& triangle : model.membranes[i].nodes.triangles()) sample.triangles.push_back(triangle);
+  } else {
+    const auto net = model.select("front_surface");
+    sample.surface_nodes = model.nodes_of({"front_surface"});
+    for (const int i : net.cables) sample.lines.push_back(model.cables[i].nodes);
+    for (const int i : net.beams) sample.lines.push_back(model.beams[i].nodes);
+  }
   sample.net_nodes = model.select("front_net_nodes").nodes;
   const double radius = context.deck.dish()->evaluation_radius;
   sample.radius = std::isnan(radius) ? 0 : radius;
@@ -302,10 +310,23 @@ void draw_deviation(Context& context) {
     cloth.triangles.push_back(triangle);
     for (const int node : triangle) range = std::max(range, std::abs(cloth.point_scalars[node]));
   }
+  for (const auto& line : sample.lines) {
+    const Vec3 middle = (sample.positions[line[0]] + sample.positions[line[1]]) / 2;
+    if (error.radius > 0 && middle.head<2>().norm() > error.radius) {
+      outside.lines.push_back(line);
+      continue;
+    }
+    cloth.lines.push_back(line);
+    for (const int node : line) range = std::max(range, std::abs(cloth.point_scalars[node]));
+  }
+  cloth.line_width = 4;
+  const char* what = sample.lines.empty() ? "cloth" : "net";
   rim.lines = frame_lines(context.system().model());
+  const std::set<std::array<int, 2>> measured(sample.lines.begin(), sample.lines.end());
+  std::erase_if(rim.lines, [&](const auto& line) { return measured.contains(line); });
   rim.line_width = 2.5;
   output::View view;
-  view.title = "Deviation of the cloth from the paraboloid";
+  view.title = fmt::format("Deviation of the {} from the paraboloid", what);
   view.subtitle = fmt::format(
       "RMS {:.3f} mm over {} nodes{}, about the mean shift of {:.3f} mm", 1e3 * error.rms, error.samples,
       error.radius > 0 ? fmt::format(" within radius {:g} m", error.radius) : "", 1e3 * error.mean_shift);
@@ -317,7 +338,7 @@ void draw_deviation(Context& context) {
   view.layers = {std::move(outside), std::move(cloth), std::move(rim)};
   if (error.radius > 0) view.layers.push_back(circle_on(*context.surface, error.radius));
   context.draw("deviation",
-               fmt::format("Deviation of the cloth from the paraboloid about its mean, RMS {:.3f} mm",
+               fmt::format("Deviation of the {} from the paraboloid about its mean, RMS {:.3f} mm", what,
                            1e3 * error.rms),
                view);
 }
@@ -400,6 +421,17 @@ void add_cloth(Context& context, output::View& view) {
   view.layers.insert(view.layers.begin(), {std::move(cloth), std::move(mesh)});
 }
 
+/// Cords of the front net between its edges.
+std::vector<int> front_cords(const model::Model& model) {
+  std::vector<int> cords;
+  for (const char* name : {"front_net", "front_rings", "front_columns"}) {
+    if (model.find_group(name) < 0) continue;
+    const auto group = model.select(name).cables;
+    cords.insert(cords.end(), group.begin(), group.end());
+  }
+  return cords.empty() ? model.select("front_surface").cables : cords;
+}
+
 }  // namespace
 
 void draw_tensions(Context& context, const model::Response& response) {
@@ -416,7 +448,7 @@ void draw_tensions(Context& context, const model::Response& response) {
   if (!context.surface && !model.membranes.empty()) add_cloth(context, view);
   context.draw("tensions", "Tensions of all cables; the frame in grey", view);
   if (!context.surface) return;
-  view = tension_view(context, response, model.select("front_net").cables, frame_lines(model));
+  view = tension_view(context, response, front_cords(model), frame_lines(model));
   view.title = "Tensions of the front net";
   view.direction = Vec3(0, 0, 1);
   view.up = Vec3(0, 1, 0);

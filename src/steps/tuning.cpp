@@ -26,7 +26,7 @@ double length_now(const assembly::System& system, const std::array<int, 2>& node
   return (at(nodes[1]) - at(nodes[0])).norm();
 }
 
-/// Displacements of the cloth and tie tensions for a unit change of each tie's unstressed length.
+/// Displacements of the surface and tie tensions for a unit change of each tie's unstressed length.
 reflector::TieInfluence tie_influence(Context& context, const std::vector<int>& ties,
                                       const reflector::SurfaceSample& sample) {
   auto& system = context.system();
@@ -53,6 +53,27 @@ reflector::TieInfluence tie_influence(Context& context, const std::vector<int>& 
     influence.present_tension[i] = std::max(0.0, stiffness * (length / unstressed - 1));
   }
   return influence;
+}
+
+/// The cables of all groups to be tuned. @throws ModelError for a group without cables, and for one that the
+/// rule does not know what to do with
+std::vector<int> tuned_cables(Context& context, const reflector::TuningOptions& options) {
+  const auto& model = context.system().model();
+  std::vector<bool> in_front(model.nodes.size(), false);
+  for (const int node : surface_sample(context).net_nodes) in_front[node] = true;
+  std::vector<int> ties;
+  for (const auto& group : options.ties) {
+    const auto cables = model.select(group).cables;
+    if (cables.empty()) throw ModelError(fmt::format("tuning: group \"{}\" has no cables", group));
+    for (const int cable : cables)
+      if (options.method == TuningMethod::rule && !in_front[model.cables[cable].nodes[0]])
+        throw ModelError(fmt::format(
+            "tuning: the rule shortens a tie by the deviation of its front node, but the cables of "
+            "\"{}\" do not begin at the front net's nodes; method: sensitivity tunes any cables",
+            group));
+    ties.insert(ties.end(), cables.begin(), cables.end());
+  }
+  return ties;
 }
 
 VecX changes(Context& context, const std::vector<int>& ties, const reflector::TuningOptions& options) {
@@ -102,7 +123,7 @@ void draw_passes(Context& context, const Json& passes) {
   chart.y_label = "RMS [mm]";
   chart.curves = {curve, area};
   context.draw("rms",
-               "RMS of the cloth's deviation from the paraboloid by tuning pass, unweighted over nodes (eq. "
+               "RMS of the deviation from the paraboloid by tuning pass, unweighted over nodes (eq. "
                "3.13) and weighted by area (eq. 3.1)",
                chart);
 }
@@ -142,8 +163,7 @@ Json run_step(Context& context, const TuningStepOptions& step) {
   auto options = step.tuning;
   if (!context.surface) throw ModelError("tuning needs a reflector: this deck has none");
   auto& system = context.system();
-  const auto ties = system.model().select(options.ties).cables;
-  if (ties.empty()) throw ModelError(fmt::format("tuning: group \"{}\" has no cables", options.ties));
+  const auto ties = tuned_cables(context, options);
   if (std::isnan(options.tension_min)) options.tension_min = 0.5 * least_tension(system, ties);
   auto error = measure(context);
   Json entry{{"status", "done"}, {"method", options.method == TuningMethod::rule ? "rule" : "sensitivity"}};

@@ -89,7 +89,7 @@ TEST(ArcLength, SnapsBack) {
   options.load_factor = 1.5;
   std::vector<double> way;
   const auto note = [&](const PathPoint&) { way.push_back(problem.point[0] + problem.point[1]); };
-  const auto summary = follow_arc(problem, work, {}, options, {}, {{}, note});
+  const auto summary = follow_arc(problem, work, {}, options, {}, {{}, note, {}});
   EXPECT_TRUE(summary.reached);
   int turns = 0;
   for (std::size_t i = 2; i < way.size(); ++i) turns += (way[i] - way[i - 1]) * (way[i - 1] - way[i - 2]) < 0;
@@ -152,6 +152,31 @@ TEST(ArcLength, StopsAtACriticalPointIfAsked) {
   EXPECT_TRUE(mentions(summary.reason, "critical point 1"));
   EXPECT_NEAR(problem.point[0], 1 - 1 / std::sqrt(3.0), 1e-6);
   EXPECT_EQ(problem.point, problem.committed);
+}
+
+TEST(ArcLength, IsTakenUpAgainAtAnyPointAndGoesTheSameWay) {
+  auto options = steps_of(0.05);
+  options.largest_step = 2;
+  options.load_factor = 1.5;
+  auto work = workspace();
+  auto problem = truss(3);
+  std::vector<VecX> places;
+  const auto whole = follow_arc(problem, work, {}, options, {},
+                                {{}, [&](const PathPoint&) { places.push_back(problem.point); }, {}});
+  ASSERT_EQ(whole.critical.size(), 2u) << "up to a limit, back and up again";
+  for (const std::size_t k : {std::size_t{2}, whole.points.size() / 2, whole.points.size() - 3}) {
+    auto again = truss(3);
+    again.point = places[k];
+    again.restart();
+    const PathStart start{whole.points[k].lambda, false, whole.points[k].arc};
+    const auto rest = follow_arc(again, work, {}, options, {}, {}, start);
+    ASSERT_EQ(rest.points.size(), whole.points.size() - k - 1) << k;
+    for (std::size_t i = 0; i < rest.points.size(); ++i)
+      EXPECT_NEAR(rest.points[i].lambda, whole.points[k + 1 + i].lambda, 1e-10) << k << ' ' << i;
+    EXPECT_EQ(rest.reason, whole.reason) << "points are counted from the beginning";
+    EXPECT_LT((again.point - problem.point).norm(), 1e-10);
+    EXPECT_EQ(rest.critical.size() + static_cast<std::size_t>(whole.points[k].arc->critical), 2u);
+  }
 }
 
 TEST(ArcLength, OfLoadsThatMoveNothingSaysSo) {

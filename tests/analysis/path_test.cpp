@@ -133,7 +133,7 @@ TEST(Path, ReportsTheLambdaItAimsAt) {
     EXPECT_EQ(iteration, calls++);
     EXPECT_GE(residual, 0);
   };
-  follow_path(problem, work, {}, {tell, {}});
+  follow_path(problem, work, {}, {tell, {}, {}});
   EXPECT_GT(calls, 2);
 }
 
@@ -178,7 +178,7 @@ TEST(Path, IsAtItsLastConvergedPointAfterAnError) {
       [](const VecX& x) -> MatX { return MatX((1 + 3 * x.array().square()).matrix().asDiagonal()); });
   auto work = workspace();
   EXPECT_THROW(follow_path(problem, work, few_iterations(),
-                           {[&](double aim, int, double) { armed = armed || aim <= 0.5; }, {}}),
+                           {[&](double aim, int, double) { armed = armed || aim <= 0.5; }, {}, {}}),
                std::runtime_error);
   EXPECT_EQ(problem.lambda, 0.5);
   EXPECT_EQ(problem.point, problem.committed);

@@ -85,5 +85,25 @@ TEST(Expression, TellsWhereAFormulaIsWrong) {
   EXPECT_EQ(fault(""), "a number, X or a function is missing (character 1)");
 }
 
+TEST(SpaceFormula, EvaluatesAtAPlace) {
+  EXPECT_DOUBLE_EQ(SpaceFormula("20 + 10*x - y^2*z")(Vec3(1, 2, 3)), 18);
+  EXPECT_DOUBLE_EQ(SpaceFormula("80*z/sqrt(x^2 + y^2)")(Vec3(3, 4, 2)), 32);
+  EXPECT_DOUBLE_EQ(SpaceFormula("5")(Vec3(1, 2, 3)), 5);
+}
+
+TEST(SpaceFormula, HasAGradient) {
+  const Vec3 slope = SpaceFormula("20 + 10*x - y^2*z").gradient(Vec3(1, 2, 3));
+  EXPECT_TRUE(slope.isApprox(Vec3(10, -12, -4), 1e-14)) << slope.transpose();
+}
+
+TEST(SpaceFormula, KnowsItsVariables) {
+  try {
+    SpaceFormula("2*X");
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "\"X\" is neither x, y, z, pi nor a function (character 3)");
+  }
+}
+
 }  // namespace
 }  // namespace tautline

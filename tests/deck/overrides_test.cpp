@@ -44,6 +44,21 @@ TEST(Overrides, ReachValuesByPathIndexAndName) {
             "ties");
 }
 
+TEST(Overrides, ReplaceListsOfSingleValues) {
+  const auto hold = [](const std::string& list) {
+    const auto deck = with("steps.staged.stages.0.hold=" + list);
+    return std::get<steps::EquilibriumOptions>(deck.steps[2].options).stages[0].hold;
+  };
+  EXPECT_EQ(hold("[ties, struts]"), (std::vector<std::string>{"ties", "struts"}));
+  EXPECT_EQ(hold("[\"ties\"]"), std::vector<std::string>{"ties"});
+  EXPECT_TRUE(hold("[]").empty());
+  EXPECT_EQ(complaint("steps.staged.stages.0.hold=ties")
+                .rfind("--set steps.staged.stages.0.hold=ties: error: this is a list, which cannot be set\n"
+                       "  expected a list such as [a, b], or the path of a single value",
+                       0),
+            0);
+}
+
 TEST(Overrides, AddKeysAndBlocksThatHaveDefaults) {
   EXPECT_FALSE(with("reflector.diagonals=false").truss()->diagonals);
   EXPECT_EQ(with("solver.max_iterations=7").solver.max_iterations, 7);
@@ -66,7 +81,7 @@ TEST(Overrides, TellWhatIsWrongWithThem) {
       "--set reflector.ring=1: error: unknown key \"ring\"\n  in reflector\n  did you mean \"rings\"?\n");
   EXPECT_EQ(complaint("parameters.subdivision=8"),
             "--set parameters.subdivision=8: error: the deck has no \"subdivision\" here\n"
-            "  expected one of: subdivisions, rim_width\n  did you mean \"subdivisions\"?\n");
+            "  expected one of: subdivisions, rim_width, net_tension\n  did you mean \"subdivisions\"?\n");
   EXPECT_EQ(complaint("steps.9.subdivisions=2")
                 .rfind("--set steps.9.subdivisions=2: error: the deck has no \"9\" here\n", 0),
             0U);

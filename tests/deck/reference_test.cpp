@@ -30,11 +30,11 @@ TEST(Explain, ShowsTheContents) {
 
 TEST(Explain, FindsAKeyByPathAndByLastWord) {
   const std::string text =
-      "reflector.perimeter-truss.gap: number [m]\n  Extra distance between front and rear net.\n"
-      "  allowed                >= 0\n  default                0\n";
-  EXPECT_EQ(explain("gap"), text);
-  EXPECT_EQ(explain("reflector.gap"), text);
-  EXPECT_EQ(explain("reflector.perimeter-truss.gap"), text);
+      "reflector.perimeter-truss.diagonals: true or false\n  Crossed cords in every bay between struts.\n"
+      "  default                true\n";
+  EXPECT_EQ(explain("diagonals"), text);
+  EXPECT_EQ(explain("reflector.diagonals"), text);
+  EXPECT_EQ(explain("reflector.perimeter-truss.diagonals"), text);
   EXPECT_EQ(explain("steps.mesh.subdivisions").rfind("steps.mesh.subdivisions: whole number\n", 0), 0U);
 }
 
@@ -69,7 +69,7 @@ TEST(Schema, IsJsonWithEveryTopLevelKey) {
 TEST(Schema, ChoosesByKind) {
   const auto json = nlohmann::json::parse(schema());
   const auto& sections = json["properties"]["sections"]["additionalProperties"]["oneOf"];
-  ASSERT_EQ(sections.size(), 16U);
+  ASSERT_EQ(sections.size(), 17U);
   EXPECT_EQ(sections[0]["properties"]["kind"]["const"], "cable");
   const auto& steps = json["properties"]["steps"]["items"]["oneOf"];
   EXPECT_EQ(steps.size(), 9U);

@@ -86,6 +86,20 @@ TEST(TubeSection, HasCowpersShearFactorsBetweenTheThinRingAndTheSolidBar) {
   EXPECT_NEAR(factor(0.1), 7.8 / 8.8, 1e-12);  // no hole left
 }
 
+TEST(SquareTubeSection, HasTheClosedFormsOfThinWalls) {
+  const double a = 0.1, t = 0.004, outer = a + t, inner = a - t;
+  const auto s = beam_of(SquareTubeSectionOptions{"steel", a, t});
+  EXPECT_NEAR(s.axial_stiffness, young * (outer * outer - inner * inner), 1e-3);
+  const double inertia = (std::pow(outer, 4) - std::pow(inner, 4)) / 12;
+  EXPECT_NEAR(s.bending_stiffness_2, young * inertia, 1e-6);
+  EXPECT_NEAR(s.bending_stiffness_3, young * inertia, 1e-6);
+  // Bredt: 4 A^2 / (perimeter/t) with the area A = a^2 inside the middle line
+  EXPECT_NEAR(s.torsion_stiffness, shear_modulus * 4 * std::pow(a, 4) * t / (4 * a), 1e-6);
+  // Cowper (1966), thin-walled square tube: 20 (1 + nu) / (48 + 39 nu)
+  EXPECT_NEAR(s.shear_stiffness_2, 26.0 / 59.7 * shear_modulus * 4 * a * t, 1e-3);
+  EXPECT_NEAR(s.mass_per_length, density * 4 * a * t, 1e-10);
+}
+
 TEST(BeamSection, WithoutShearFlexibilityIsRigidInShear) {
   EXPECT_EQ(beam_of(RectangleSectionOptions{"steel", 0.1, 0.2, false}).shear_stiffness_2, 0);
   EXPECT_EQ(beam_of(RoundSectionOptions{"steel", 0.1, false}).shear_stiffness_3, 0);

@@ -16,7 +16,7 @@ using testing_messages::mentions;
 using testing_messages::message_of;
 
 SubdivideOptions parts(int subdivisions, FacetPattern pattern = FacetPattern::structured) {
-  return {subdivisions, pattern, {}};
+  return {subdivisions, pattern, {}, {}};
 }
 
 /// The cloth of two_facets() alone.

@@ -83,6 +83,34 @@ TEST(SurfaceError, OfFlatFacetsHasTheClosedForm) {
   EXPECT_NEAR(error.rms, 0, 1e-15);
 }
 
+TEST(SurfaceError, OfANetWithoutClothIsTakenAlongItsCords) {
+  // A straight side of projected length s with its ends on z = r^2/4f: the error is (s^2/4 - x^2)/4f, its
+  // mean s^2/24f, its rms about the mean sqrt(4/45) s^2/16f. A degree-5 rule is exact.
+  const double f = 6, s = 0.75;
+  const Paraboloid dish(12, f, -6);
+  SurfaceSample net = hexagon(8, s, on(dish));
+  for (const auto& [a, b, c] : net.triangles)
+    for (const auto& side : {std::array{a, b}, {b, c}, {c, a}}) net.lines.push_back(side);
+  net.triangles.clear();
+  const SurfaceError error = measure_surface(dish, net);
+  EXPECT_NEAR(error.rms_area_weighted, std::sqrt(4.0 / 45) * s * s / (16 * f), 1e-10 * s * s);
+  EXPECT_NEAR(error.rms_area_weighted_direct, std::sqrt(8.0 / 15) * s * s / (16 * f), 1e-10 * s * s);
+  EXPECT_NEAR(error.rms, 0, 1e-15);
+}
+
+TEST(SurfaceError, OfCordsStopsAtTheCircle) {
+  // What lies outside the circle has no weight, even where the cords that cross the circle end.
+  const Paraboloid dish(12, 6, -6);
+  SurfaceSample net = hexagon(8, 0.7, on(dish));
+  for (const auto& [a, b, c] : net.triangles) net.lines.push_back({a, b});
+  net.triangles.clear();
+  net.radius = 2;
+  const double inside = measure_surface(dish, net).rms_area_weighted_direct;
+  for (Vec3& p : net.positions)
+    if (std::hypot(p.x(), p.y()) > 2.8) p.z() += 1;  // farther than cords of 0.7 m that cross the circle
+  EXPECT_NEAR(measure_surface(dish, net).rms_area_weighted_direct, inside, 1e-14);
+}
+
 TEST(SurfaceError, UniformShiftIsAllMeanShift) {
   const Paraboloid dish(12, 8, 1.125);
   const double shift = 0.0037;

@@ -106,6 +106,34 @@ TEST_F(OwnTies, SensitivityKeepsTensionsWithinBounds) {
   for (int i = 0; i < 4; ++i) EXPECT_LE(1.0 - 100 * change[i], 1.1 + 1e-12);
 }
 
+// A fifth cord in line with the first: the two always carry one tension, which the sum of their lengths
+// makes. No tensions that differ can be had; both change by the same, and the deviations become equal as
+// before.
+TEST_F(OwnTies, SensitivityKnowsTensionsThatCannotBeHad) {
+  options_.regularisation = 1e-9;
+  influence_.displacement.conservativeResize(12, 5);
+  influence_.displacement.col(4) = influence_.displacement.col(0);
+  influence_.tension = -100 * MatX::Identity(5, 5);
+  for (const int i : {0, 4})
+    for (const int j : {0, 4}) influence_.tension(i, j) = -50;
+  influence_.present_tension = VecX::Constant(5, 1.0);
+  const VecX change = sensitivity_change(surface_, sample_, influence_, options_);
+  EXPECT_NEAR(change[0], change[4], 1e-12);
+  for (int i = 1; i < 4; ++i) EXPECT_NEAR(change[i] + error_[i], change[0] + change[4] + error_[0], 1e-9);
+}
+
+// The error of cords alone, weighted by length: the rule and the measure are one quadratic form.
+TEST_F(OwnTies, SensitivityOfANetWithoutClothMakesTheDeviationsEqual) {
+  options_.objective = TuningObjective::area;
+  options_.regularisation = 1e-9;
+  sample_.triangles.clear();
+  sample_.lines = {{0, 1}, {1, 3}, {3, 2}, {2, 0}};
+  // Between the ends, a cord of length l over z = r^2/4f is l^2/24f above the surface in the mean; the sides
+  // are equal, so equal deviations of the nodes are best.
+  const VecX change = sensitivity_change(surface_, sample_, influence_, options_);
+  for (int i = 1; i < 4; ++i) EXPECT_NEAR(change[i] + error_[i], change[0] + error_[0], 1e-8);
+}
+
 TEST_F(OwnTies, SensitivityKeepsToTheLargestChange) {
   options_.regularisation = 1e-9;
   options_.max_change = 5e-4;

@@ -63,6 +63,11 @@ case $1 in
     run 3 "$SOURCE/inputs/dish_4m.yaml" --set reflector.rim_height=0.25
     says "$WORK/err" 'tie'
     ;;
+  tuning_by_rule)   # of cords that do not begin at the front net
+    sed 's|- kind: tuning|- {kind: tuning, ties: end_cords}|' "$SOURCE/inputs/perimeter_truss_48m.yaml" >"$WORK/deck.yaml"
+    run 3 "$WORK/deck.yaml" --set parameters.subdivisions=1
+    says "$WORK/err" '"end_cords".*method: sensitivity'
+    ;;
   not_converged)
     run 4 "$here/decks/not_converged.yaml"
     valid "$out" not_converged

@@ -3,32 +3,43 @@
 # of which only later steps differ takes up what is done; another structure is refused.
 . "$(dirname "$0")/common.sh"
 
-deck=$SOURCE/inputs/frame.yaml
-whole=$WORK/whole broken=$WORK/broken resumed=$WORK/resumed
 signal=KILL
 [ $# -eq 0 ] || signal=TERM     # mpirun passes it on to its processes
+launcher=("$@")
+
+# interrupted NAME DECK [OPTION...]: runs it whole into NAME, broken off within a step, and resumed; displacements agree to 1e-10 of the largest.
+interrupted() {
+  local whole=$WORK/$1 broken=$WORK/$1_broken resumed=$WORK/$1_resumed deck=$2
+  shift 2
+  expect 0 "$TAUTLINE" run "$deck" -o "$whole" "$@"
+  "${launcher[@]}" "$TAUTLINE" run "$deck" -o "$broken" "$@" >"$WORK/out" 2>"$WORK/err" &
+  local pid=$!
+  for _ in $(seq 600); do
+    [ ! -s "$broken/checkpoints/point.bin" ] || break
+    sleep 0.02
+  done
+  kill -"$signal" "$pid" 2>/dev/null || true
+  wait "$pid" 2>/dev/null || true
+  has "$broken/checkpoints/point.bin"
+  expect 0 "$TAUTLINE" run "$deck" -o "$resumed" --from "$broken" "$@"
+  valid "$resumed" done
+  says "$resumed/results.json" '"resumed"'
+  paste -d, "$whole/nodes.csv" "$resumed/nodes.csv" | awk -F, '
+    NR == 1 { n = NF / 2; next }
+    { for (i = 2; i <= n; ++i) if ($i + 0 == $i) { d = $i - $(i + n); if (d < 0) d = -d; if (d > worst) worst = d
+        u = $i < 0 ? -$i : $i; if (i >= 9 && u > most) most = u } }
+    END { exit !(worst <= 1e-10 * most + 1e-15) }' || fail "the resumed run of $deck came to other displacements"
+}
+
+deck=$SOURCE/inputs/frame.yaml
+whole=$WORK/frame
 options=(--quiet --no-pictures --set 'steps.vertical and side.increments=400')
-expect 0 "$TAUTLINE" run "$deck" -o "$whole" "${options[@]}"
-
-"$@" "$TAUTLINE" run "$deck" -o "$broken" "${options[@]}" >"$WORK/out" 2>"$WORK/err" &
-pid=$!
-for _ in $(seq 600); do
-  [ ! -s "$broken/checkpoints/point.bin" ] || break
-  sleep 0.02
-done
-kill -"$signal" "$pid" 2>/dev/null || true
-wait "$pid" 2>/dev/null || true
-has "$broken/checkpoints/step_2.bin"
-
-expect 0 "$TAUTLINE" run "$deck" -o "$resumed" --from "$broken" "${options[@]}"
-valid "$resumed" done
-says "$resumed/results.json" '"resumed"'
-# Displacements to 1e-10 of the largest.
-paste -d, "$whole/nodes.csv" "$resumed/nodes.csv" | awk -F, '
-  NR == 1 { n = NF / 2; next }
-  { for (i = 2; i <= n; ++i) if ($i + 0 == $i) { d = $i - $(i + n); if (d < 0) d = -d; if (d > worst) worst = d
-      u = $i < 0 ? -$i : $i; if (i >= 9 && u > most) most = u } }
-  END { exit !(worst <= 1e-10 * most + 1e-15) }' || fail "the resumed run came to other displacements"
+interrupted frame "$deck" "${options[@]}"
+# A path followed by its length goes on from its last point, critical points and all.
+interrupted lee "$SOURCE/inputs/lee_frame.yaml" --quiet --no-pictures --set steps.path.arc_length.largest_step=0.1 --set steps.path.arc_length.max_points=10000
+points() { sed -n '/"critical_points"/,/\]/p' "$1/results.json"; }
+[ "$(points "$WORK/lee")" = "$(points "$WORK/lee_resumed")" ] || fail "the resumed path has other critical points"
+says "$WORK/lee/results.json" '"limit"'
 
 expect 0 "$TAUTLINE" run "$deck" -o "$WORK/more" --from "$whole" "${options[@]}" --set steps.modal.modes=6
 says "$WORK/more/results.json" '"steps": 3'

@@ -36,4 +36,23 @@ examine 2 '{a:/steps/one/rms}' 'reference: 2, origin: analytic'
 examine 2 '{a:/steps/one/rms}' 'reference: 2, report_only: true, origin: analytic'
 examine 2 '{a:/steps/one/rms}' 'reference: 2, relative: 1, origin: published'
 examine 2 '{a:/steps/one/rms}' 'reference: 2, relative: 1, origin: heard'
+
+# The list behind docs/thesis.md: figures that nothing covers are named, and so are runs and quantities that are not there.
+list=$WORK/source/verification/thesis/thesis.yaml
+mkdir -p "$(dirname "$list")"
+examine 0 '{a:/steps/one/rms}' 'reference: 2, relative: 1e-9, origin: analytic'
+# thesis CODE ITEM: a list of one item, and this exit code.
+thesis() {
+  printf 'introduction: text\ncases: {made_up: short}\nchapters:\n  - {title: t, items: [{item: Figure 3.22, covers: "3.22", about: x, %s}]}\n' "$2" >"$list"
+  expect "$1" "$THESIS" --source "$WORK/source"
+}
+thesis 1 'rows: [{case: made_up, quantity: q}]'
+says "$WORK/out" 'no item covers 4.25'
+if grep -q 'covers 3.22' "$WORK/out"; then fail "3.22 is covered"; fi
+thesis 1 'status: shown only, charts: [{file: f, title: t, x: x, y: y, curves: [{label: l, y: "{made_up.b:/steps/0/rms}"}]}]'
+says "$WORK/out" 'no run "made_up.b"'
+thesis 1 'text: nothing'
+says "$WORK/out" 'rows or a status'
+thesis 2 'rows: [{case: made_up, quantity: lost}]'
+says "$WORK/err" 'no quantity "lost"'
 done_testing

@@ -8,58 +8,17 @@
 
 #include <fmt/format.h>
 
+#include <tautline/output/pointer.hpp>
+
 namespace verify {
 
 namespace {
-
-using Json = nlohmann::json;
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
   for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
   return parts;
-}
-
-bool is_index(const std::string& token) {
-  return !token.empty() && token.find_first_not_of("0123456789") == std::string::npos;
-}
-
-/// The entry of a list that a token of a pointer means, or null.
-const Json* entry(const Json& list, const std::string& token) {
-  if (list.empty()) return nullptr;
-  if (token == "first") return &list.front();
-  if (token == "last") return &list.back();
-  if (is_index(token)) return std::stoul(token) < list.size() ? &list[std::stoul(token)] : nullptr;
-  const auto found = std::find_if(
-      list.begin(), list.end(), [&](const Json& e) { return e.is_object() && e.value("name", "") == token; });
-  return found == list.end() ? nullptr : &*found;
-}
-
-void collect(const Json& value, Values& values) {
-  if (value.is_number())
-    values.push_back(value.get<double>());
-  else if (value.is_array())
-    for (const auto& e : value) collect(e, values);
-  else
-    throw std::runtime_error("is no number");
-}
-
-void walk(const Json& value, const std::vector<std::string>& tokens, std::size_t i, Values& values) {
-  if (i == tokens.size()) return collect(value, values);
-  const std::string& token = tokens[i];
-  if (token.empty()) return walk(value, tokens, i + 1, values);
-  if (value.is_array() && token == "*") {
-    for (const auto& e : value) walk(e, tokens, i + 1, values);
-    return;
-  }
-  const Json* next = nullptr;
-  if (value.is_array())
-    next = entry(value, token);
-  else if (value.is_object() && value.contains(token))
-    next = &value[token];
-  if (next == nullptr) throw std::runtime_error(fmt::format("there is no \"{}\"", token));
-  walk(*next, tokens, i + 1, values);
 }
 
 Table read_table(const std::string& path) {
@@ -112,11 +71,9 @@ Values Data::pointer(const std::string& path) {
   if (results_.is_null()) {
     std::ifstream file(directory_ + "/results.json");
     if (!file) throw std::runtime_error("results.json cannot be read");
-    results_ = Json::parse(file);
+    results_ = nlohmann::ordered_json::parse(file);
   }
-  Values values;
-  walk(results_, split(path, '/'), 0, values);
-  return values;
+  return tautline::output::numbers_at(results_, path);
 }
 
 Values Data::column(const std::string& reference) {

@@ -25,21 +25,22 @@ class Data {
 
   /// @brief Numbers by reference. @throws std::runtime_error that names what is missing
   ///
-  /// "/steps/tuning/surface/rms": a pointer into results.json; entries of a list are named by index, by
-  /// `first` or `last`, by their "name", or by `*` for all of them.
+  /// "/steps/tuning/surface/rms": a path into results.json (tautline/output/pointer.hpp).
   /// "cables.csv#tension?group=front_net&within=5": a column, with conditions on others. `within`: nodes, or
   /// both ends of elements, no farther from the z axis than that, by nodes.csv. Conditions "id<=10" and
   /// "id>=10" compare numbers.
   Values find(const std::string& reference);
+  /// The rows of a table, read when first asked for.
+  const Table& table(const std::string& file);
+  const std::string& directory() const { return directory_; }
 
  private:
   Values pointer(const std::string& path);
   Values column(const std::string& reference);
-  const Table& table(const std::string& file);
   std::vector<bool> within(const Table& table, double radius);
 
   std::string directory_;
-  nlohmann::json results_;
+  nlohmann::ordered_json results_;
   std::map<std::string, Table> tables_;
 };
 

@@ -11,28 +11,9 @@ namespace verify {
 
 namespace {
 
-std::string number(double value) {
-  if (value != 0 && std::abs(value) < 1e-3) return fmt::format("{:.3g}", value);
-  return fmt::format("{:.5g}", value);
-}
-
-/// The reference as written, if it is written as a number.
-std::string reference_text(const Result& r) {
-  const auto& text = r.quantity.reference;
-  const bool plain = text.find_first_not_of("0123456789.eE+-") == std::string::npos;
-  return plain ? text : number(r.reference);
-}
-
-std::string with_unit(const Quantity& quantity) {
-  return quantity.unit.empty() ? quantity.name : fmt::format("{} [{}]", quantity.name, quantity.unit);
-}
-
 std::string row(const Result& r, const std::string& mark) {
-  const std::string sign = r.quantity.check == Check::at_most    ? "≤ "
-                           : r.quantity.check == Check::at_least ? "≥ "
-                                                                 : "";
-  return fmt::format("| {}{} | {} | {}{} | {} | {} | {} | {} |\n", with_unit(r.quantity), mark,
-                     number(r.ours), sign, reference_text(r), difference_text(r), tolerance_text(r.quantity),
+  return fmt::format("| {}{} | {} | {} | {} | {} | {} | {} |\n", with_unit(r.quantity), mark,
+                     number_text(r.ours), reference_text(r), difference_text(r), tolerance_text(r.quantity),
                      to_string(r.quantity.origin), verdict(r));
 }
 
@@ -62,6 +43,24 @@ std::string command(const Run& run) {
 }
 
 }  // namespace
+
+std::string number_text(double value) {
+  if (value != 0 && std::abs(value) < 1e-3) return fmt::format("{:.3g}", value);
+  return fmt::format("{:.5g}", value);
+}
+
+std::string reference_text(const Result& r) {
+  const auto& text = r.quantity.reference;
+  const bool plain = text.find_first_not_of("0123456789.eE+-") == std::string::npos;
+  const char* sign = r.quantity.check == Check::at_most    ? "≤ "
+                     : r.quantity.check == Check::at_least ? "≥ "
+                                                           : "";
+  return sign + (plain ? text : number_text(r.reference));
+}
+
+std::string with_unit(const Quantity& quantity) {
+  return quantity.unit.empty() ? quantity.name : fmt::format("{} [{}]", quantity.name, quantity.unit);
+}
 
 std::string difference_text(const Result& r) {
   const double difference = r.ours - r.reference;

@@ -14,6 +14,10 @@ struct CaseResults {
   std::vector<Result> results;
 };
 
+std::string number_text(double value);
+/// The reference as written, if it is written as a number; with its sign if it is a bound.
+std::string reference_text(const Result& result);
+std::string with_unit(const Quantity& quantity);
 /// Difference from the reference: relative where that means something, else absolute.
 std::string difference_text(const Result& result);
 std::string tolerance_text(const Quantity& quantity);

@@ -2,19 +2,16 @@
 /// Runs verification cases and compares: see verification/README.md.
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <map>
 
 #include <fmt/format.h>
-#include <sys/wait.h>
 
 #include "case.hpp"
-#include "data.hpp"
 #include "page.hpp"
+#include "runner.hpp"
 
 namespace {
 
@@ -31,17 +28,18 @@ constexpr const char* usage =
 
 struct Settings {
   std::vector<std::string> cases;
-  std::string program, source, work, mpiexec = "mpirun";
-  bool reuse = false, write_docs = false;
+  Program program;
+  bool write_docs = false;
 };
 
 Settings read_arguments(int argc, char** argv) {
   Settings settings;
-  std::map<std::string, std::string*> values{{"--program", &settings.program},
-                                             {"--source", &settings.source},
-                                             {"--work", &settings.work},
-                                             {"--mpiexec", &settings.mpiexec}};
-  std::map<std::string, bool*> flags{{"--reuse", &settings.reuse}, {"--write-docs", &settings.write_docs}};
+  std::map<std::string, std::string*> values{{"--program", &settings.program.path},
+                                             {"--source", &settings.program.source},
+                                             {"--work", &settings.program.work},
+                                             {"--mpiexec", &settings.program.mpiexec}};
+  std::map<std::string, bool*> flags{{"--reuse", &settings.program.reuse},
+                                     {"--write-docs", &settings.write_docs}};
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (const auto value = values.find(word); value != values.end() && i + 1 < argc)
@@ -53,7 +51,7 @@ Settings read_arguments(int argc, char** argv) {
     else
       settings.cases.push_back(word);
   }
-  if (settings.program.empty() || settings.source.empty() || settings.work.empty())
+  if (settings.program.path.empty() || settings.program.source.empty() || settings.program.work.empty())
     throw std::runtime_error("--program, --source and --work are needed");
   return settings;
 }
@@ -66,90 +64,12 @@ std::vector<std::string> all_cases(const std::string& source) {
   return names;
 }
 
-std::string quoted(const std::string& text) {
-  return "'" + text + "'";
-}
-
-/// Runs the program as a user would. @throws std::runtime_error with the end of what it said
-void perform(const Run& run, const Case& c, const Settings& settings, const std::string& directory) {
-  if (settings.reuse && fs::exists(directory + "/results.json")) return;
-  fs::remove_all(directory);
-  fs::create_directories(directory);
-  const std::string beside = c.directory + "/" + run.deck,
-                    deck = fs::exists(beside) ? beside : settings.source + "/" + run.deck;
-  std::string command =
-      run.ranks > 1 ? fmt::format("{} -n {} --oversubscribe --bind-to none ", settings.mpiexec, run.ranks)
-                    : "";
-  command += fmt::format("{} run {} -o {} --quiet --no-pictures", quoted(settings.program), quoted(deck),
-                         quoted(directory));
-  for (const auto& o : run.overrides) command += " --set " + quoted(o);
-  const std::string log = directory + ".log";
-  fmt::print("{}: {}\n", run.name, command);
-  std::cout.flush();
-  const int status = std::system((command + " >" + quoted(log) + " 2>&1").c_str());
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != run.exit_code)
-    throw std::runtime_error(
-        fmt::format("run {} did not end with exit code {}, see {}", run.name, run.exit_code, log));
-}
-
-bool passes(const Result& r) {
-  const auto& q = r.quantity;
-  if (!std::isfinite(r.ours) || !std::isfinite(r.reference)) return false;
-  switch (q.check) {
-    case Check::at_most:
-      return r.ours <= r.reference;
-    case Check::at_least:
-      return r.ours >= r.reference;
-    case Check::report_only:
-      return true;
-    case Check::equal:
-      break;
-  }
-  return std::abs(r.ours - r.reference) <=
-         q.relative.value_or(0) * std::abs(r.reference) + q.absolute.value_or(0);
-}
-
-/// Deviations of more than 5 % from what was published or computed elsewhere have to be explained.
-std::string missing_explanation(const Result& r) {
-  const auto& q = r.quantity;
-  const bool elsewhere = q.origin == Origin::published || q.origin == Origin::other_code;
-  const bool compared = q.check == Check::equal || q.check == Check::report_only;
-  if (!elsewhere || !compared || !q.note.empty() ||
-      std::abs(r.ours - r.reference) <= 0.05 * std::abs(r.reference))
-    return {};
-  return q.absolute ? "" : "deviates by more than 5 % without a note that explains it";
-}
-
-Result examine(const Quantity& quantity, const Lookup& lookup) {
-  Result r{quantity, 0, 0, false, {}};
-  try {
-    r.ours = evaluate_number(quantity.value, lookup);
-    r.reference = evaluate_number(quantity.reference, lookup);
-    r.problem = missing_explanation(r);
-    r.passed = r.problem.empty() && passes(r);
-  } catch (const std::exception& error) {
-    r.problem = error.what();
-  }
-  return r;
-}
-
-CaseResults run_case(const std::string& name, const Settings& settings) {
-  CaseResults result{read_case(settings.source + "/verification/" + name), {}};
+CaseResults run_case(const std::string& name, const Program& program) {
+  CaseResults result{read_case(program.source + "/verification/" + name), {}};
   const auto& c = result.the_case;
-  std::map<std::string, Data> data{{"case", Data(c.directory)}};
-  for (const auto& run : c.runs) {
-    const std::string directory = settings.work + "/" + name + "/" + run.name;
-    perform(run, c, settings, directory);
-    data.emplace(run.name, Data(directory));
-  }
-  const Lookup lookup = [&](const std::string& reference) {
-    const auto colon = reference.find(':');
-    const auto found = data.find(reference.substr(0, colon));
-    if (colon == std::string::npos || found == data.end())
-      throw std::runtime_error(fmt::format("{{{}}} names no run", reference));
-    return found->second.find(reference.substr(colon + 1));
-  };
-  for (const auto& quantity : c.quantities) result.results.push_back(examine(quantity, lookup));
+  DataByRun data{{"case", Data(c.directory)}};
+  for (const auto& run : c.runs) data.emplace(run.name, Data(perform(run, c, program)));
+  for (const auto& quantity : c.quantities) result.results.push_back(examine(quantity, lookup_in(data)));
   return result;
 }
 
@@ -181,14 +101,14 @@ int run_all(const Settings& settings) {
   const bool all = settings.cases.empty();
   bool passed = true;
   std::vector<CaseResults> cases;
-  for (const auto& name : all ? all_cases(settings.source) : settings.cases) {
-    cases.push_back(run_case(name, settings));
+  for (const auto& name : all ? all_cases(settings.program.source) : settings.cases) {
+    cases.push_back(run_case(name, settings.program));
     fmt::print("{}\n", name);
     passed = print(cases.back()) && passed;
   }
-  write_pages(settings.work + "/docs", cases);
+  write_pages(settings.program.work + "/docs", cases);
   if (settings.write_docs && !all) throw std::runtime_error("--write-docs is for all cases together");
-  if (settings.write_docs && passed) write_pages(settings.source + "/docs", cases);
+  if (settings.write_docs && passed) write_pages(settings.program.source + "/docs", cases);
   return passed ? 0 : 1;
 }
 

@@ -17,7 +17,7 @@ struct Watch {
   std::function<double()> measure;  ///< its value at the problem's present point
 };
 
-/// @brief Follows the path from the problem's present point, which must be an equilibrium at lambda = 0,
+/// @brief Follows the path from the problem's present point, which must be an equilibrium at `start.lambda`,
 /// until one of the options' ends; the problem is left at the last converged point. Collective.
 ///
 /// PathSummary::points, critical and reason tell of it; `reached` is true at an end that was asked for.
@@ -25,6 +25,6 @@ struct Watch {
 /// @throws Interrupted between iterations if the user asked for it
 PathSummary follow_arc(PathProblem& problem, Workspace& workspace, const NewtonOptions& newton,
                        const ArcLengthOptions& options, const std::optional<Watch>& watch = {},
-                       const PathCallback& callback = {});
+                       const PathCallback& callback = {}, const PathStart& start = {});
 
 }  // namespace tautline::analysis

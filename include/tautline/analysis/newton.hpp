@@ -56,7 +56,7 @@ struct NewtonSummary {
   NewtonStatus status = NewtonStatus::diverged;
   std::string reason;
   std::vector<NewtonIteration> iterations;  ///< the first is the start
-  int newton_iterations() const { return static_cast<int>(iterations.size()) - 1; }
+  int newton_iterations() const { return iterations.empty() ? 0 : static_cast<int>(iterations.size()) - 1; }
   bool converged() const { return status == NewtonStatus::converged; }
 };
 

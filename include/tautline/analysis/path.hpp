@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,10 +35,20 @@ class PathProblem : public NonlinearProblem {
   virtual void weights(double rotation_weight, la::Vector& d) const = 0;
 };
 
+/// How a path that is followed by its length goes on from a point: with the point, all that taking it up
+/// again needs.
+struct ArcPlace {
+  double length = 0, first_length = 0;  ///< of the next step and of the first, in the metric of the path
+  double lambda_weight = 0;             ///< of the square of lambda in that metric
+  int direction = 1;                    ///< +1: with the tangent along which lambda grows; -1: against it
+  int points = 0, critical = 0, bifurcations = 0;  ///< met so far
+};
+
 struct PathPoint {
   double lambda = 0;
   NewtonSummary newton;
   int negative_directions = 0;  ///< in which the structure is unstable there
+  std::optional<ArcPlace> arc;  ///< of a path followed by its length
 };
 
 /// A point at which a path becomes unstable or stable again.
@@ -51,6 +62,15 @@ struct CriticalPoint {
   std::shared_ptr<const PathProblem::Kept> kept;  ///< the problem at the point
 };
 
+/// Where a path begins.
+struct PathStart {
+  double lambda = 0;  ///< not 0 where a run is taken up again
+  /// No equilibrium is known yet, and so there is no path to keep to: where Newton's method fails from here
+  /// the search goes downhill in energy (see descend).
+  bool unknown = false;
+  std::optional<ArcPlace> arc;  ///< of a path followed by its length, taken up again
+};
+
 struct PathSummary {
   bool reached = false;
   std::string reason;             ///< one sentence: reached, or why not and what to try
@@ -58,6 +78,7 @@ struct PathSummary {
   bool singular = false;          ///< the last failed attempt met a singular tangent
   int failed_attempts = 0;
   int newton_iterations = 0;            ///< of all attempts
+  int descent_steps = 0;                ///< downhill in energy, where no equilibrium was known
   la::Inertia inertia;                  ///< of the tangent at the end
   std::vector<CriticalPoint> critical;  ///< in the order in which the path meets them
   double lambda() const { return points.empty() ? 0 : points.back().lambda; }
@@ -67,14 +88,14 @@ struct PathSummary {
 struct PathCallback {
   std::function<void(double, int, double)> iteration;  ///< (lambda aimed at, iteration, relative residual)
   std::function<void(const PathPoint&)> converged;     ///< the problem stands at the point
+  std::function<void(const CriticalPoint&)> critical;  ///< the problem stands anywhere and must stay there
 };
 
 /// @brief Follows the path to lambda = 1 or as far as it goes; the problem is left at the last converged
 /// point. Collective.
-/// @param start  lambda at which the problem stands, in equilibrium: not 0 where a run is taken up again
 /// @throws Interrupted between iterations if the user asked for it; the problem is then at its last converged
 /// point
 PathSummary follow_path(PathProblem& problem, Workspace& workspace, const NewtonOptions& options,
-                        const PathCallback& callback = {}, double start = 0);
+                        const PathCallback& callback = {}, const PathStart& start = {});
 
 }  // namespace tautline::analysis

@@ -29,6 +29,8 @@ struct OutOfBalance {
   double force = 0;   ///< largest nodal force [N]
   double moment = 0;  ///< largest nodal moment [N m]
   int node = -1;      ///< where the largest force is
+  /// Largest nodal force before anything new acts: zero if the stage starts from an equilibrium [N]
+  double before = 0;
 };
 
 /// What acts on the model at one end of a stage, node by node, facet by facet, group by group.
@@ -36,7 +38,8 @@ struct Acting {
   Points force, moment;              ///< dead nodal loads, of all kinds together [N], [N m]
   Points line;                       ///< distributed dead load of each beam, in `force` already [N/m]
   std::vector<double> pressure;      ///< on membranes, then shells [Pa]
-  std::vector<double> temperature;   ///< change of each group [K]
+  std::vector<double> temperature;   ///< change of cables, then beams, membranes, shells [K]
+  Points temperature_gradient;       ///< of each beam [K/m]
   std::vector<double> strain;        ///< initial strain of each cable
   Vec3 acceleration = Vec3::Zero();  ///< [m/s^2]
 

@@ -1,9 +1,11 @@
 #pragma once
 /// @file
-/// A formula of one variable, as a user writes it, with its derivatives.
+/// Formulas as a user writes them: of one variable with its derivatives, and of a place.
 
 #include <functional>
 #include <string>
+
+#include <tautline/core/types.hpp>
 
 namespace tautline {
 
@@ -22,10 +24,26 @@ class Expression {
   /// @throws std::invalid_argument with the place of the fault, counted from 1
   explicit Expression(const std::string& text);
 
-  Jet2 operator()(double x) const { return evaluate_({x, 1, 0}); }
+  Jet2 operator()(double x) const {
+    const Jet2 at{x, 1, 0};
+    return evaluate_(&at);
+  }
 
  private:
-  std::function<Jet2(const Jet2&)> evaluate_;
+  std::function<Jet2(const Jet2*)> evaluate_;
+};
+
+/// A formula of the coordinates x, y, z [m], written as an Expression is.
+class SpaceFormula {
+ public:
+  /// @throws std::invalid_argument with the place of the fault, counted from 1
+  explicit SpaceFormula(const std::string& text);
+
+  double operator()(const Vec3& x) const;
+  Vec3 gradient(const Vec3& x) const;
+
+ private:
+  std::function<Jet2(const Jet2*)> evaluate_;
 };
 
 }  // namespace tautline

@@ -3,6 +3,7 @@
 /// The deck: the file a user writes, read strictly into option structs. docs/deck/ is generated from the same
 /// table.
 
+#include <concepts>
 #include <map>
 #include <optional>
 #include <string>
@@ -13,15 +14,17 @@
 #include <tautline/model/model_options.hpp>
 #include <tautline/output/output_options.hpp>
 #include <tautline/reflector/perimeter_truss_options.hpp>
+#include <tautline/reflector/tensegrity_rim_options.hpp>
 #include <tautline/reflector/umbrella_options.hpp>
+#include <tautline/reflector/y_umbrella_options.hpp>
 #include <tautline/rod/rod_options.hpp>
 #include <tautline/steps/step_options.hpp>
 
 namespace tautline::deck {
 
 /// The kinds of `reflector`.
-using Reflector =
-    std::variant<reflector::PerimeterTrussOptions, reflector::UmbrellaOptions, rod::UmbrellaOptions>;
+using Reflector = std::variant<reflector::PerimeterTrussOptions, reflector::TensegrityRimOptions,
+                               reflector::UmbrellaOptions, reflector::YUmbrellaOptions, rod::UmbrellaOptions>;
 
 struct Deck {
   std::string path;
@@ -45,14 +48,27 @@ struct Deck {
   const reflector::PerimeterTrussOptions* truss() const {
     return reflector ? std::get_if<reflector::PerimeterTrussOptions>(&*reflector) : nullptr;
   }
+  /// The reflector if it is a rim with struts on cords, or null.
+  const reflector::TensegrityRimOptions* tensegrity_rim() const {
+    return reflector ? std::get_if<reflector::TensegrityRimOptions>(&*reflector) : nullptr;
+  }
   /// The reflector if it is an umbrella of spokes and nets, or null.
   const reflector::UmbrellaOptions* umbrella() const {
     return reflector ? std::get_if<reflector::UmbrellaOptions>(&*reflector) : nullptr;
   }
+  /// The reflector if it is an umbrella with Y-shaped spokes, or null.
+  const reflector::YUmbrellaOptions* y_umbrella() const {
+    return reflector ? std::get_if<reflector::YUmbrellaOptions>(&*reflector) : nullptr;
+  }
   /// What reflectors of nets and ties have in common, or null.
   const reflector::DishOptions* dish() const {
-    if (truss() != nullptr) return truss();
-    return umbrella();
+    const auto as_dish = []<class Options>(const Options& options) -> const reflector::DishOptions* {
+      if constexpr (std::derived_from<Options, reflector::DishOptions>)
+        return &options;
+      else
+        return nullptr;
+    };
+    return reflector ? std::visit(as_dish, *reflector) : nullptr;
   }
   /// The reflector if it is an umbrella of rods, or null.
   const rod::UmbrellaOptions* rod_umbrella() const {

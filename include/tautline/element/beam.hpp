@@ -27,6 +27,8 @@ struct BeamGeometry {
   Mat<3, 2> x_ref;  ///< end coordinates, column = node [m]
   Mat3 frame;       ///< columns: local axes 1, 2, 3 in the reference configuration, right-handed, orthonormal
   double free_strain = 0;  ///< axial strain without force, e.g. thermal [-]
+  /// Change of the rotations about local axes 2 and 3 along the beam without moment, e.g. thermal [1/m].
+  Vec<2> free_curvature{0, 0};
 };
 
 /// Motion of the two ends: displacements and rotations from the reference configuration.

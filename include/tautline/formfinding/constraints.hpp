@@ -59,7 +59,8 @@ struct ConstrainedResult {
   int cloth_iterations = 0;           ///< how often the shape of the cloth was renewed
   double out_of_balance = 0;          ///< largest force at a node along the directions in equilibrium [N]
   int iterations = 0;
-  int inner_iterations = 0;      ///< of the linear solver, in all
+  int inner_iterations = 0;           ///< of the linear solver, in all
+  std::vector<Vec3> coordinate_norm;  ///< |x|, |y|, |z| over free nodes after each iteration [m]
   std::vector<double> residual;  ///< largest scaled residual before the first and after each iteration [-]
   std::vector<double> step_relaxation;  ///< alpha of eq. (2.25), or of a damped step 1
   int n_rows = 0;                       ///< constraints asked for

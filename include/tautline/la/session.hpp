@@ -18,6 +18,11 @@ class Session {
   Session& operator=(const Session&) = delete;
 };
 
+/// Whether a session has begun.
+bool started();
+/// Whether mpirun started this process among others; can be asked before a session begins.
+bool launched_by_mpirun();
+
 /// This process among those of the run; 0 if no session has begun.
 int rank();
 int size();

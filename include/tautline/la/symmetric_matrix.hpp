@@ -39,6 +39,8 @@ class SymmetricMatrix {
   void multiply(const Vector& x, Vector& y) const;
   /// Adds `value` to the diagonal.
   void shift(double value);
+  /// Adds `factor` times the entries of `diagonal` to the diagonal.
+  void add_diagonal(double factor, const Vector& diagonal);
   /// A copy with `value` added to the diagonal.
   SymmetricMatrix shifted(double value) const;
   /// A copy with `factor` times `other` added, whose pattern must lie within this one's.
@@ -46,6 +48,8 @@ class SymmetricMatrix {
   double norm_of_diagonal() const;
   /// Sums of |A_ij| over each of this rank's own rows. Collective.
   std::vector<double> absolute_row_sums() const;
+  /// In all three rows of a block the largest of these sums, or a tiny value above zero. Collective.
+  std::vector<double> absolute_row_sums_of_blocks() const;
 
  private:
   SymmetricMatrix() = default;

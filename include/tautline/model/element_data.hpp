@@ -37,7 +37,7 @@ struct CableData {
 /// Warmth lengthens the unstressed cable: 1 + eps0 becomes (1 + eps0) / (1 + alpha dT).
 inline CableData cable_data(const Model& model, const Cable& cable) {
   const Group& group = model.groups[cable.group];
-  const double thermal = group.thermal_expansion * group.temperature_change;
+  const double thermal = group.thermal_expansion * cable.temperature_change;
   const double strain =
       thermal == 0 ? cable.initial_strain : (cable.initial_strain - thermal) / (1 + thermal);
   return {{model.axial_stiffness(cable), strain, group.kind == ElementKind::bar},
@@ -46,7 +46,7 @@ inline CableData cable_data(const Model& model, const Cable& cable) {
 
 inline element::CatenaryProperties catenary_properties(const Model& model, const Cable& cable) {
   const Group& group = model.groups[cable.group];
-  const double warm = 1 + group.thermal_expansion * group.temperature_change;
+  const double warm = 1 + group.thermal_expansion * cable.temperature_change;
   return {model.axial_stiffness(cable), model.unstressed_length(cable) * warm,
           group.cable.mass_per_length / warm};
 }
@@ -54,7 +54,9 @@ inline element::CatenaryProperties catenary_properties(const Model& model, const
 inline element::BeamGeometry beam_geometry(const Model& model, const Beam& beam) {
   const Group& group = model.groups[beam.group];
   return {reference_nodes<2>(model, beam.nodes), beam.frame,
-          group.thermal_expansion * group.temperature_change};
+          group.thermal_expansion * beam.temperature_change,
+          // strain = u' - y2 theta3' + y3 theta2'
+          group.thermal_expansion * Vec<2>(beam.temperature_gradient[1], -beam.temperature_gradient[0])};
 }
 
 inline element::BeamMotion beam_motion(const State& state, const Beam& beam) {
@@ -84,7 +86,7 @@ element::MembraneLaw membrane_law(const Model& model, const Membrane& membrane) 
       group.membrane.orthotropic()
           ? angle_in(element::membrane_frame<N>(reference_nodes<N>(model, membrane.nodes)), group.orientation)
           : 0.0;
-  return element::membrane_law(group.membrane, angle, membrane.prestress, group.temperature_change);
+  return element::membrane_law(group.membrane, angle, membrane.prestress, membrane.temperature_change);
 }
 
 template <int N>
@@ -94,7 +96,7 @@ element::ShellGeometry<N> shell_geometry(const Model& model, const Shell& shell)
   geometry.x_ref = reference_nodes<N>(model, shell.nodes);
   for (int i = 0; i < N; ++i) geometry.director.col(i) = shell.director[static_cast<std::size_t>(i)];
   geometry.prestress = shell.prestress;
-  const double growth = group.shell.thermal_expansion * group.temperature_change;
+  const double growth = group.shell.thermal_expansion * shell.temperature_change;
   geometry.free_strain = growth + growth * growth / 2;  // as a Green-Lagrange strain
   return geometry;
 }

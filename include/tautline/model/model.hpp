@@ -4,6 +4,7 @@
 /// the structure as described and its finite-element mesh are both a Model (the second by model::subdivide).
 
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -24,7 +25,8 @@ struct CableSection {
   double mass_per_length = 0;  ///< per unstressed length [kg/m]
 };
 
-/// A beam whose dimensions change from its start to its end: what a section at a place along it follows from.
+/// A round tube, whose dimensions may change from its start to its end: what a section at a place along it
+/// follows from.
 struct TaperedTube {
   std::array<double, 2> diameter{0, 0};   ///< mean diameter at start and end [m]
   std::array<double, 2> thickness{0, 0};  ///< [m]
@@ -45,12 +47,12 @@ struct Group {
   CableSection cable;                 ///< valid where kind == cable, bar, catenary
   element::BeamSection beam;          ///< valid where kind == beam; of a tapered one, at its middle
   std::optional<TaperedTube> taper;   ///< beams that are not prismatic
+  std::optional<TaperedTube> tube;    ///< beams that are round tubes, prismatic or not
   element::MembraneSection membrane;  ///< valid where kind == membrane
   element::ShellSection shell;        ///< valid where kind == shell
   element::SpringProperties spring;   ///< valid where kind == spring
   PointMass mass;                     ///< valid where kind == mass
   double thermal_expansion = 0;       ///< of cables, bars, catenaries and beams [1/K]
-  double temperature_change = 0;      ///< from the reference temperature, at present [K]
   Vec3 orientation = Vec3::Zero();    ///< beams: local axis 3 lies in the plane of the beam and this vector;
                                     ///< membranes and shells: axis 1 of material and prestress lies along it
   double target_tension = 0;  ///< cables: tension asked of form-finding [N]; 0 if none
@@ -65,9 +67,10 @@ constexpr bool is_cable_like(ElementKind kind) {
 struct Cable {
   std::array<int, 2> nodes;
   int group = 0;
-  double initial_strain = 0;    ///< l_ref / L0 - 1, see element::CableProperties
-  int parent = 0;               ///< index of the cable in the structure before subdivision
-  double stiffness_factor = 1;  ///< its E A over that of the group
+  double initial_strain = 0;      ///< l_ref / L0 - 1, see element::CableProperties
+  int parent = 0;                 ///< index of the cable in the structure before subdivision
+  double stiffness_factor = 1;    ///< its E A over that of the group
+  double temperature_change = 0;  ///< mean, from the reference temperature, at present [K]
 };
 
 struct Beam {
@@ -75,8 +78,10 @@ struct Beam {
   int group = 0;
   Mat3 frame = Mat3::Identity();  ///< reference frame, columns local axes
   int parent = 0;
-  std::array<double, 2> span{0, 1};  ///< place of its ends along the beam before subdivision, 0 to 1
-  Vec3 line_load = Vec3::Zero();     ///< distributed dead load at present, weight included [N/m]
+  std::array<double, 2> span{0, 1};   ///< place of its ends along the beam before subdivision, 0 to 1
+  Vec3 line_load = Vec3::Zero();      ///< distributed dead load at present, weight included [N/m]
+  Vec<2> temperature_gradient{0, 0};  ///< along local axes 2 and 3, at present [K/m]
+  double temperature_change = 0;      ///< mean, from the reference temperature, at present [K]
 };
 
 struct Membrane {
@@ -84,6 +89,7 @@ struct Membrane {
   int group = 0;
   Vec3 prestress = Vec3::Zero();  ///< N11, N22, N12 in element::membrane_frame [N/m]
   int parent = 0;
+  double temperature_change = 0;  ///< mean, from the reference temperature, at present [K]
 };
 
 struct Shell {
@@ -91,7 +97,8 @@ struct Shell {
   int group = 0;
   Vec3 prestress = Vec3::Zero();  ///< N11, N22, N12 in element::shell_frame [N/m]
   int parent = 0;
-  std::array<Vec3, 4> director;  ///< unit normals of the mid-surface at the nodes, see find_directors
+  std::array<Vec3, 4> director;   ///< unit normals of the mid-surface at the nodes, see find_directors
+  double temperature_change = 0;  ///< mean, from the reference temperature, at present [K]
 };
 
 /// A spring between two nodes, or from the ground to one.
@@ -164,7 +171,9 @@ struct Load {
   Vec3 surface_force = Vec3::Zero();  ///< dead force per reference area of membranes and shells [Pa]
   double pressure = 0;                ///< follows the facets, along their normals [Pa]
   double temperature_change = 0;      ///< of groups [K]
-  Vec3 acceleration = Vec3::Zero();   ///< body force per mass on the whole structure, e.g. gravity [m/s^2]
+  std::function<double(const Vec3&)> temperature_field;   ///< the same by place in the reference [K]; or none
+  std::function<Vec3(const Vec3&)> temperature_gradient;  ///< of that field [K/m]; beams bend with it
+  Vec3 acceleration = Vec3::Zero();  ///< body force per mass on the whole structure, e.g. gravity [m/s^2]
 };
 
 /// The load `factor` times as large.

@@ -59,6 +59,14 @@ struct TubeSectionOptions {
   bool shear_flexible = true;
 };
 
+/// A thin-walled square tube, sides along local axes 2 and 3.
+struct SquareTubeSectionOptions {
+  std::string material;
+  double side = 0;       ///< between the middles of opposite walls [m]
+  double thickness = 0;  ///< wall [m]
+  bool shear_flexible = true;
+};
+
 /// A tube whose diameter and wall change linearly from its first to its second node.
 struct TaperedTubeSectionOptions {
   std::string material;
@@ -137,8 +145,8 @@ struct HingeSectionOptions {
 
 using SectionOptions =
     std::variant<CableSectionOptions, BarSectionOptions, CatenarySectionOptions, RectangleSectionOptions,
-                 RoundSectionOptions, TubeSectionOptions, TaperedTubeSectionOptions, ISectionOptions,
-                 GeneralSectionOptions, GeneralBeamSectionOptions, MembraneSectionOptions,
+                 RoundSectionOptions, TubeSectionOptions, SquareTubeSectionOptions, TaperedTubeSectionOptions,
+                 ISectionOptions, GeneralSectionOptions, GeneralBeamSectionOptions, MembraneSectionOptions,
                  ShellSectionOptions, SpringSectionOptions, MassSectionOptions, RigidLinkSectionOptions,
                  HingeSectionOptions>;
 
@@ -192,6 +200,7 @@ struct LoadOptions {
   std::optional<Vec3> surface_force;         ///< per reference area [Pa]
   std::optional<double> pressure;            ///< follows the facets [Pa]
   std::optional<double> temperature_change;  ///< of groups [K]
+  std::string temperature_field;             ///< the same as a formula of x, y, z; may be empty
   std::optional<Vec3> acceleration;          ///< acts on every mass [m/s^2]; needs no `on`
   SourceLocation where;
 

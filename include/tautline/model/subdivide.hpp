@@ -6,6 +6,7 @@
 #include <string>
 
 #include <tautline/model/model.hpp>
+#include <tautline/model/tube_shells.hpp>
 
 namespace tautline::model {
 
@@ -18,6 +19,7 @@ struct SubdivideOptions {
   int subdivisions = 1;  ///< parts of each facet side, of the cables on it and of the beams
   FacetPattern pattern = FacetPattern::structured;
   std::map<std::string, int> group_subdivisions;  ///< override for a cable or beam group
+  TubeShellOptions tubes;  ///< replaced before all else; their shells are not split further
 };
 
 /// @brief Splits facets, the cables and beams along their sides, and all other beams into parts that share

@@ -1,6 +1,7 @@
 #pragma once
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace tautline::reflector {
 
@@ -17,7 +18,7 @@ enum class TuningObjective {
 struct TuningOptions {
   TuningMethod method = TuningMethod::rule;
   TuningObjective objective = TuningObjective::area;  ///< sensitivity only
-  std::string ties = "ties";                          ///< cable group to be tuned
+  std::vector<std::string> ties{"ties"};              ///< cable groups to be tuned
   int max_passes = 12;
   double tolerance = 0.002;  ///< stop when the RMS changes by less than this part of itself [-]
   /// Sensitivity: lower bound on tie tension [N]; NaN: half of the least tie tension when the tuning begins.

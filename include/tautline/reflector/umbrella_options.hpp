@@ -1,9 +1,20 @@
 #pragma once
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include <tautline/reflector/dish_options.hpp>
 
 namespace tautline::reflector {
+
+/// What the cords of a net make between two spokes (Belov 2021, Fig. 3.18).
+enum class NetPattern {
+  triangles,         ///< isosceles triangles
+  belts,             ///< cords along the spokes and belts of tangential cords
+  rectangles,        ///< belts, and columns of cords parallel to the bisector of two spokes
+  right_triangles,   ///< rectangles with a diagonal each
+  coarse_triangles,  ///< isosceles triangles of twice the side; rear only
+};
 
 /// Parameters of the umbrella reflector: spokes from a hub, each ending in a fork that holds two nets.
 struct UmbrellaOptions : DishOptions {
@@ -16,6 +27,8 @@ struct UmbrellaOptions : DishOptions {
   double fork_length = 0;
   /// Radius of the tips, one for all or one for each spoke [m]; empty with a fork_length.
   std::vector<double> tip_radius;
+  NetPattern front_pattern = NetPattern::triangles;
+  std::optional<NetPattern> rear_pattern;  ///< not given: as in front
   /// Before form-finding: sag of the peripheral cord between two spokes over its span [-].
   double cord_sag = 0.09;
   /// Before form-finding: sag of the last ring between two spokes over its span; that of the others grows
@@ -28,5 +41,19 @@ struct UmbrellaOptions : DishOptions {
   bool paired_ties =
       false;  ///< two ties round the spoke instead of one through it, at each node over a spoke
 };
+
+/// Whether a net of the pattern has the group of cords `front_<part>` or `rear_<part>`.
+inline bool has_cords(const UmbrellaOptions& options, NetPattern pattern, std::string_view part) {
+  if (part == "net" || part == "peripheral" || part == "end_peripheral") return true;
+  if (pattern == NetPattern::triangles) {
+    if (part == "rings") return options.separate_rings;
+    if (part == "end_cords") return options.end_cords;
+    return part != "columns";
+  }
+  if (part == "rings" || part == "end_cords") return true;
+  if (part == "connectors") return pattern != NetPattern::belts;
+  const bool columns = pattern == NetPattern::rectangles || pattern == NetPattern::right_triangles;
+  return part == "columns" && columns;
+}
 
 }  // namespace tautline::reflector

@@ -20,6 +20,7 @@ namespace tautline::steps {
 enum class FormMethod {
   tension,      ///< a tension for every group that states one; those that state a force density keep it
   linear,       ///< given force densities
+  balanced,     ///< force densities that balance the drawn shape, tensions near those of the groups
   constraints,  ///< any mixture of tensions, lengths and reactions
   elastic,      ///< elastic cables of given unstressed lengths
   dynamic_relaxation,  ///< elastic cables, cables of constant tension and films, by a damped motion
@@ -60,6 +61,13 @@ enum class FrameKind {
   precambered  ///< as drawn under the net; the shape without stress is looked for
 };
 
+/// How the rear net of a reflector is found.
+enum class RearForm {
+  mirrored,  ///< it is the front net's mirror image
+  tension,   ///< by itself, under the pull of the ties: for the tensions of its groups
+  balanced   ///< by itself: force densities that balance the mirror image of the front net's nodes best
+};
+
 enum class FormSurfaceKind { plane, paraboloid, table };
 
 /// `surface` of a form_finding step on a plain model.
@@ -91,6 +99,7 @@ struct FormFindingOptions {
   std::optional<std::vector<std::string>>
       cloth;  ///< membranes that pull; not given: all with films, else none
   FrameKind frame = FrameKind::rigid;
+  std::optional<RearForm> rear;  ///< reflectors; not given: balanced where the patterns differ, else mirrored
   std::vector<std::string> loads;  ///< whose nodal forces act
   FormMethod method = FormMethod::tension;
   FormSolver solver = FormSolver::automatic;

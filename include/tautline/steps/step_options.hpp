@@ -48,12 +48,13 @@ struct UntilOptions {
 /// Who chooses the stages of a release.
 enum class Release { as_given, automatic };
 
-/// What is tried where Newton's method fails.
-enum class Fallback { none, dynamic_relaxation };
+/// What is tried where Newton's method fails. Automatic: descent, as long as no equilibrium is known.
+enum class Fallback { automatic, none, descent, dynamic_relaxation };
 
-/// Random displacements of the free nodes at the start.
+/// Random changes at the start.
 struct ScatterOptions {
-  double position = 0;  ///< largest, in each coordinate [m]
+  double position = 0;  ///< largest displacement of a free node, in each coordinate [m]
+  double tension = 0;   ///< largest change of a cable's initial strain, over it [-]
   int seed = 1;
 };
 
@@ -69,7 +70,7 @@ struct EquilibriumOptions {
   analysis::ArcLengthOptions arc_length;
   UntilOptions until;
   Release release = Release::as_given;
-  Fallback fallback = Fallback::none;
+  Fallback fallback = Fallback::automatic;
   ScatterOptions scatter;
 };
 

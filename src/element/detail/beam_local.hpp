@@ -20,8 +20,9 @@ struct BeamLocalResponse {
 /// eps = elongation/L + mean along the beam of (v'^2 + w'^2)/2.
 /// @param[in] length       in the reference configuration [m]
 /// @param[in] free_strain  axial strain without force [-]
+/// @param[in] free_curvature  of the rotations about 2 and 3, without moment [1/m]
 BeamLocalResponse beam_local_law(const BeamSection& section, double length, double free_strain,
-                                 const Vec<7>& deformation, Want want);
+                                 const Vec<2>& free_curvature, const Vec<7>& deformation, Want want);
 
 /// Consistent mass matrix in the axes of the beam, order (u1, spin1, u2, spin2).
 Mat<12> beam_local_mass(const BeamSection& section, double length);
