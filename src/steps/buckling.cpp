@@ -6,6 +6,7 @@
 #include "steps/linear_buckling.hpp"
 #include "steps/mode_shapes.hpp"
 #include "steps/summaries.hpp"
+#include "steps/fields.hpp"
 
 namespace tautline::steps {
 

@@ -12,6 +12,8 @@
 #include "steps/scatter.hpp"
 #include "steps/stage.hpp"
 #include "steps/summaries.hpp"
+#include "steps/state_pictures.hpp"
+#include "steps/fields.hpp"
 
 namespace tautline::steps {
 

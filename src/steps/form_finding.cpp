@@ -18,6 +18,7 @@
 #include "steps/rear_form.hpp"
 #include "steps/reflector_form.hpp"
 #include "steps/summaries.hpp"
+#include "steps/state_pictures.hpp"
 
 namespace tautline::steps {
 

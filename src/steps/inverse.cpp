@@ -11,6 +11,8 @@
 #include "steps/inverse_problem.hpp"
 #include "steps/rod_structure.hpp"
 #include "steps/summaries.hpp"
+#include "steps/state_pictures.hpp"
+#include "steps/fields.hpp"
 
 namespace tautline::steps {
 

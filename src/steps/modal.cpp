@@ -10,6 +10,7 @@
 #include "steps/context.hpp"
 #include "steps/mode_shapes.hpp"
 #include "steps/summaries.hpp"
+#include "steps/fields.hpp"
 
 namespace tautline::steps {
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "steps/summaries.hpp"
+#include "steps/state_pictures.hpp"
 
 namespace tautline::steps {
 

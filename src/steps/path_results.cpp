@@ -11,6 +11,7 @@
 #include "steps/balance.hpp"
 #include "steps/mode_shapes.hpp"
 #include "steps/summaries.hpp"
+#include "steps/fields.hpp"
 
 namespace tautline::steps {
 

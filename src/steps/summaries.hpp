@@ -1,11 +1,10 @@
 #pragma once
 /// @file
-/// Result structs as JSON, and the pictures and fields that several steps share.
+/// Result structs as JSON; the surface of a reflector.
 
 #include <nlohmann/json.hpp>
 
 #include <tautline/model/response.hpp>
-#include <tautline/output/fields.hpp>
 #include <tautline/reflector/surface_error.hpp>
 
 #include "steps/context.hpp"
@@ -36,21 +35,5 @@ Json model_json(const model::Model& model, int dofs);
 /// The cloth and the net nodes of a reflector in the system's present state.
 reflector::SurfaceSample surface_sample(Context& context);
 reflector::SurfaceError measure(Context& context);
-
-/// Displacement, tension, slack flag, beam forces and axes, membrane stresses, surface deviation.
-output::FieldGrid field_grid(Context& context, const model::Response& response);
-
-/// All cables coloured by tension; of a reflector the front net, too.
-void draw_tensions(Context& context, const model::Response& response);
-
-/// Pictures of a state: deviation of the cloth, tensions of the nets.
-void draw_state(Context& context, const model::Response& response);
-
-/// Facets of membranes or shells as triangles of a layer.
-template <class Facets>
-void add_triangles(const Facets& facets, output::ViewLayer& layer) {
-  for (const auto& facet : facets)
-    for (const auto& triangle : facet.nodes.triangles()) layer.triangles.push_back(triangle);
-}
 
 }  // namespace tautline::steps

@@ -12,6 +12,8 @@
 
 #include "steps/context.hpp"
 #include "steps/summaries.hpp"
+#include "steps/state_pictures.hpp"
+#include "steps/fields.hpp"
 
 namespace tautline::steps {
 
