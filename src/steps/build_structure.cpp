@@ -179,9 +179,9 @@ void check_sections(const model::Model& model, const deck::Deck& deck) {
                             [&](const model::Link& link) { return link.group == group; });
     model::for_each_kind(model, [&](const auto& elements) { used = used || in(elements); });
     if (!options.section.empty() && !used)
-      throw ModelError(fmt::format(
-          "{}group \"{}\" has a section but no elements: the structure has none of that name",
-          model::prefix(options.where), name));
+      throw ModelError(
+          fmt::format("{}group \"{}\" has a section but no elements: the structure has none of that name",
+                      model::prefix(options.where), name));
   }
 }
 
@@ -259,11 +259,10 @@ void add_cyclic(model::Model& model, const model::CyclicOptions& options) {
       return (model.nodes[node] - wanted).norm() <= 1e-6 * size;
     });
     if (found == leaders.end())
-      throw ModelError(
-          fmt::format("{}node {} of \"to\" has no partner among the nodes of \"from\" turned "
-                      "by {} degrees: it would be at ({:g}, {:g}, {:g})",
-                      model::prefix(options.where), follower + 1,
-                      options.angle, wanted.x(), wanted.y(), wanted.z()));
+      throw ModelError(fmt::format(
+          "{}node {} of \"to\" has no partner among the nodes of \"from\" turned "
+          "by {} degrees: it would be at ({:g}, {:g}, {:g})",
+          model::prefix(options.where), follower + 1, options.angle, wanted.x(), wanted.y(), wanted.z()));
     if (*found != follower) model.cyclic_pairs.push_back({*found, follower, turn});
   }
 }
