@@ -60,7 +60,10 @@ class Checkpoints {
 
 /// @brief The checkpoint in a directory of results that goes farthest along the steps of this deck, or
 /// nothing if not even the first step is the same. Read by every rank.
-/// @throws DeckError if the checkpoints belong to another structure, LibraryError if there are none
+/// @throws LibraryError if there are none, or one is damaged or belongs to another structure
 std::optional<Checkpoint> find_checkpoint(const deck::Deck& deck, const std::string& directory);
+
+/// @throws LibraryError unless every list of the checkpoint has as many entries as `wanted`, of the mesh as made
+void require_fit(const Checkpoint& checkpoint, const assembly::Rest& wanted, const std::string& from);
 
 }  // namespace tautline::steps

@@ -82,7 +82,7 @@ void Context::set_system(model::Model mesh) {
 }
 
 bool Context::is_lost(const assembly::OutOfBalance& start) const {
-  return !equilibrium_known && start.before > system_->rounding_force() && start.before >= start.force / 2;
+  return !equilibrium_known && start.before >= start.force / 2 && start.before > system_->rounding().force;
 }
 
 void Context::note_model() {
