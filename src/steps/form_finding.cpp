@@ -90,8 +90,8 @@ void refresh_other_groups(Context& context, const std::vector<std::string>& sett
 
 /// Tensions of the structure's cables and bars as found, nothing displaced.
 Json found_groups_json(const model::Model& structure) {
-  auto groups = model::summarise_groups(
-      structure, model::evaluate_response(structure, model::State::initial(structure)));
+  const auto state = model::State::initial(structure);
+  auto groups = model::summarise_groups(structure, state, model::evaluate_response(structure, state));
   std::erase_if(groups, [](const auto& entry) {
     return entry.second.kind != model::ElementKind::cable && entry.second.kind != model::ElementKind::bar;
   });
@@ -100,8 +100,6 @@ Json found_groups_json(const model::Model& structure) {
 
 /// Force of each support on the net.
 Json support_forces(const model::Model& structure, const FormNet& net, const Form& found) {
-  double size = 0;
-  for (const Vec3& force : found.reaction) size = std::max(size, force.norm());
   Json supports = Json::object();
   for (const auto& support : structure.supports) {
     Vec3 sum = Vec3::Zero();
@@ -111,9 +109,7 @@ Json support_forces(const model::Model& structure, const FormNet& net, const For
         sum += found.reaction[i];
         any = true;
       }
-    if (any)
-      supports[support.name] = {
-          {"force", {on_grid(sum.x(), size), on_grid(sum.y(), size), on_grid(sum.z(), size)}}};
+    if (any) supports[support.name] = {{"force", {sum.x(), sum.y(), sum.z()}}};
   }
   return supports;
 }
@@ -239,7 +235,7 @@ Json run_step(Context& context, const FormFindingOptions& options) {
   if (!frame.is_null()) entry.update(frame);
   if (coupled) entry["rear"] = coupled->details;
   if (!found.warnings.empty()) entry["warnings"] = found.warnings;
-  for (const auto& warning : found.warnings) context.progress.say("warning: " + warning);
+  for (const auto& warning : found.warnings) context.warn("form_finding", warning);
   draw_convergence(context, found);
   if (!found.converged && !found.details.contains("worst")) return entry;
   if (!found.converged && context.surface) return entry;

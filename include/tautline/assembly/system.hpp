@@ -14,6 +14,7 @@
 #include <tautline/assembly/mass_options.hpp>
 #include <tautline/la/symmetric_matrix.hpp>
 #include <tautline/model/model.hpp>
+#include <tautline/model/rounding.hpp>
 #include <tautline/model/state.hpp>
 
 namespace tautline::assembly {
@@ -87,10 +88,8 @@ class System : public analysis::PathProblem {
   const Kinematics& kinematics() const noexcept { return kinematics_; }
   /// Diagonal of the box around the reference nodes [m].
   double size() const noexcept { return size_; }
-  /// Force that the rounding of the stiffest elements may leave out of balance [N].
-  double rounding_force() const noexcept { return rounding_force_; }
-  /// The same of cables and beams alone [N].
-  double rounding_force_of_lines() const noexcept { return rounding_force_of_lines_; }
+  /// What rounding may leave out of balance in the present state, as norms over the nodes. Collective.
+  model::Rounding rounding() const;
   int n_dofs() const noexcept { return 3 * map_.layout.total; }
   double assembly_seconds() const noexcept { return assembly_seconds_; }
 
@@ -159,6 +158,8 @@ class System : public analysis::PathProblem {
   };
   /// Of the supports: internal minus external force, zero where nothing is held. Collective.
   NodalForces reactions() const;
+  /// Of linear constraints and of the neighbouring sectors of a cyclic structure. Collective.
+  NodalForces constraint_forces() const;
   /// Of the ground on the structure through grounded springs.
   NodalForces ground_springs() const;
   /// Of everything that acts in the present state: dead loads, pressure, weight. Collective.
@@ -186,6 +187,10 @@ class System : public analysis::PathProblem {
   void add_forces(const model::State& state, const Kinematics& at, std::vector<double>& force,
                   std::vector<double>& magnitude) const;
   std::vector<double> out_of_balance() const;
+  /// Dead loads and pressure on every node; catenaries feel their weight themselves.
+  NodalForces external() const;
+  /// Internal less external force on every node, what links carry put to their leaders.
+  NodalForces nodal_residual() const;
   Acting acting(const Boundary& boundary) const;
   void add_element_loads(const model::Load& load, Acting& to) const;
   void find_drives(const Boundary& boundary);
@@ -194,7 +199,10 @@ class System : public analysis::PathProblem {
   std::span<const double> own_part(const std::vector<double>& all) const;
   std::vector<double> gathered(const std::vector<double>& own_complete) const;
   void apply(double lambda);
-  void find_rounding();
+  model::Rounding rounding_beside(const Vec<2>& forces_and_moments) const;
+  /// Norms over the nodes of forces and of moments, of `value(block, component)` in this rank's blocks.
+  template <class Value>
+  Vec<2> norms_by_kind(const Value& value) const;
   /// Tangent with the element's state given by `state_of(element)`.
   template <class StateOf>
   void assemble_tangent(la::SymmetricMatrix& k, const StateOf& state_of);
@@ -212,8 +220,6 @@ class System : public analysis::PathProblem {
   std::optional<std::vector<double>> wanted_strain_;
   double lambda_ = 1, driven_to_ = 0, committed_drive_ = 0, size_ = 1;
   double support_stiffness_ = 1;
-  double rounding_force_ = 0, rounding_moment_ = 0;  // of the stiffest elements
-  double rounding_force_of_lines_ = 0;
   mutable std::vector<double> magnitude_;  // of the last residual, all unknowns
   mutable double assembly_seconds_ = 0;
 };
