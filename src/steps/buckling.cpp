@@ -54,6 +54,9 @@ Json run_step(Context& context, const BucklingOptions& options) {
     if (reference > 0)
       entry["critical_loads"].push_back(to_digits(found.factors[i] * reference, certain_digits));
   }
+  for (const auto& [sign, groups] : found.slack)
+    if (!groups.empty()) entry["slack_at_first_factor"][sign] = groups;
+  for (const auto& doubt : found.doubts) context.warn(doubt.code, doubt.message);
   show_modes(context, found);
   return entry;
 }

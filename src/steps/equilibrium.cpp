@@ -96,7 +96,7 @@ Json run_step(Context& context, const EquilibriumOptions& options) {
   if (!runner.way().empty()) entry["path"] = runner.way();
   entry["critical_points"] = runner.critical();
   entry["groups"] = groups_json(model::summarise_groups(system.model(), response), system.rounding_force());
-  if (context.surface) entry["surface"] = surface_json(measure(context));
+  if (context.surface) entry["surface"] = surface_json(context, measure(context));
   if (context.umbrella) entry["rods"] = rods_json(context, response);
   context.write_fields(context.step_name, field_grid(context, response));
   draw_state(context, response);

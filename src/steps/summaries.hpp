@@ -27,7 +27,8 @@ double on_grid(double value, double size);
 /// @param rounding what the rounding of the stiffest elements may leave in an axial force, see
 /// assembly::System::rounding_force [N]
 Json groups_json(const std::map<std::string, model::GroupSummary>& groups, double rounding = 0);
-Json surface_json(const reflector::SurfaceError& error);
+/// Warns of what is not certain in it.
+Json surface_json(Context& context, const reflector::SurfaceError& error);
 /// Of all rods: one beam for each link, one cable between neighbours at each node.
 Json umbrella_json(const rod::Umbrella& umbrella);
 Json model_json(const model::Model& model, int dofs);
