@@ -178,8 +178,7 @@ void System::add_forces(const model::State& state, const Kinematics& at, std::ve
     expansion.add(values.cwiseAbs(), magnitude);
   };
   for_each_own([&](const auto& element) {
-    add(element.nodes, uses_rotations(model_, element),
-        contribution(model_, state, element, Want::force).force);
+    add(element.nodes, uses_rotations(model_, element), answer(state, element, Want::force).force);
   });
   for_each_pressed([&](const model::FacetNodes& nodes, double pressure) {
     const Expansion expansion(at, map_, nodes, false);
@@ -259,7 +258,7 @@ std::vector<double> System::stiffness_times(const std::vector<double>& increment
   std::vector<double> product(origin_.size(), 0.0);
   for_each_own([&](const auto& element) {
     const Expansion expansion(kinematics_, map_, element.nodes, uses_rotations(model_, element));
-    const auto c = contribution(model_, state_, element, Want::tangent);
+    const auto c = answer(state_, element, Want::tangent);
     expansion.add((c.tangent * expansion.template rows_of<VecX>(increment)).eval(), product);
   });
   return product;

@@ -51,6 +51,9 @@ Json run_step(Context& context, const BucklingOptions& options) {
     entry["residuals"].push_back(found.residuals[i]);
     if (reference > 0) entry["critical_loads"].push_back(found.factors[i] * reference);
   }
+  for (const auto& [sign, groups] : found.slack)
+    if (!groups.empty()) entry["slack_at_first_factor"][sign] = groups;
+  for (const auto& doubt : found.doubts) context.warn(doubt.code, doubt.message);
   show_modes(context, found);
   return entry;
 }

@@ -152,6 +152,7 @@ Json run_step(Context& context, const CollapseOptions& options) {
     const int modes = amplitude != 0 ? mode : 1;
     const auto found = linear_buckling(context, loads, modes, BucklingOptions::Sign::positive);
     if (!found.failure.empty()) return fail(found.failure);
+    for (const auto& doubt : found.doubts) context.warn(doubt.code, doubt.message);
     if (static_cast<int>(found.factors.size()) < modes) return fail(too_few_modes(found, options));
     if (!options.linear_factor) linear = found.factors.front();
     if (amplitude != 0) {

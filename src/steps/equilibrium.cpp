@@ -94,7 +94,7 @@ Json run_step(Context& context, const EquilibriumOptions& options) {
   if (!runner.way().empty()) entry["path"] = runner.way();
   entry["critical_points"] = runner.critical();
   entry["groups"] = groups_json(model::summarise_groups(system.model(), system.state(), response));
-  if (context.surface) entry["surface"] = surface_json(measure(context));
+  if (context.surface) entry["surface"] = surface_json(context, measure(context));
   if (context.umbrella) entry["rods"] = rods_json(context, response);
   context.write_fields(context.step_name, field_grid(context, response));
   draw_state(context, response);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <tautline/core/error.hpp>
 #include <tautline/la/eigen_solver.hpp>
 #include <tautline/la/session.hpp>
 #include <tautline/model/response.hpp>
@@ -92,6 +93,11 @@ Json run_step(Context& context, const ModalOptions& options) {
   auto& workspace = context.workspace();
   system.tangent(workspace.tangent);
   const auto mass = system.mass(options.mass);
+  if (mass.norm_of_diagonal() == 0)
+    throw ModelError(
+        "nothing that can move has mass, so that there are no vibrations: give the materials a `density`, "
+        "the "
+        "sections a mass, or add point masses");
   context.progress.update(
       fmt::format("{} | {} modes of {} unknowns", context.step_name, options.modes, system.n_dofs()));
   const auto pairs = la::solve_vibration(workspace.tangent, mass, options.modes);

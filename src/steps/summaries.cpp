@@ -44,12 +44,18 @@ Json groups_json(const std::map<std::string, model::GroupSummary>& groups) {
   return result;
 }
 
-Json surface_json(const reflector::SurfaceError& e) {
+Json surface_json(Context& context, const reflector::SurfaceError& e) {
+  if (!e.best_fit_converged)
+    context.warn(
+        "best_fit_not_converged",
+        "the search for the best-fit paraboloid ended before it converged: its RMS is an upper bound "
+        "and its focal length is not to be used");
   Json entry{{"rms", e.rms},
              {"mean_shift", e.mean_shift},
              {"rms_direct", e.rms_direct},
              {"rms_best_fit", e.rms_best_fit},
              {"best_fit_focal_length", e.best_fit_focal_length},
+             {"best_fit_converged", e.best_fit_converged},
              {"rms_area_weighted", e.rms_area_weighted},
              {"rms_nodes", e.rms_nodes},
              {"rms_half_path", e.rms_half_path},

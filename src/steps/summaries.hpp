@@ -13,7 +13,8 @@ namespace tautline::steps {
 
 /// Figures of each group, and beside them the level below which they mean nothing.
 Json groups_json(const std::map<std::string, model::GroupSummary>& groups);
-Json surface_json(const reflector::SurfaceError& error);
+/// Warns of what is not certain in it.
+Json surface_json(Context& context, const reflector::SurfaceError& error);
 /// Of all rods: one beam for each link, one cable between neighbours at each node.
 Json umbrella_json(const rod::Umbrella& umbrella);
 Json model_json(const model::Model& model, int dofs);

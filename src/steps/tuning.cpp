@@ -206,7 +206,7 @@ Json run_step(Context& context, const TuningStepOptions& step) {
   entry["newton_iterations"] = newton;
   const auto response = model::evaluate_response(system.model(), system.state());
   entry["groups"] = groups_json(model::summarise_groups(system.model(), system.state(), response));
-  entry["surface"] = surface_json(error);
+  entry["surface"] = surface_json(context, error);
   context.write_fields(context.step_name, field_grid(context, response));
   draw_state(context, response);
   draw_passes(context, passes);
