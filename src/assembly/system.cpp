@@ -11,6 +11,7 @@
 
 #include "assembly/contribution.hpp"
 #include "assembly/expansion.hpp"
+#include "assembly/load_audit.hpp"
 #include "assembly/own_elements.hpp"
 
 namespace tautline::assembly {
@@ -70,7 +71,8 @@ System::System(model::Model model)
   mine(model_.masses, share_.masses);
   origin_.assign(static_cast<std::size_t>(n_dofs()), 0.0);
   magnitude_ = start_residual_ = origin_;
-  end_ = start_ = now_ = acting({});
+  for (const auto& cable : model_.cables) now_.strain.push_back(cable.initial_strain);
+  end_ = start_ = now_ = acting({}, now_.strain);
   for (const auto& group : model_.groups)
     if (model::is_cable_like(group.kind))
       support_stiffness_ = std::max(support_stiffness_, group.cable.axial_stiffness / size_);
@@ -92,7 +94,7 @@ void System::set_state(const model::State& state, const std::vector<double>& str
 void System::reset() {
   set_state(model::State::initial(model_));
   std::fill(turned_.begin(), turned_.end(), Vec3::Zero());
-  start_ = end_ = now_ = acting({});
+  start_ = end_ = now_ = acting({}, now_.strain);
 }
 
 std::vector<double> System::strains() const {
@@ -107,9 +109,10 @@ OutOfBalance System::begin_stage(const Boundary& boundary) {
   kinematics_.hold(boundary.supports);
   kinematics_.linearise(state_);
   start_ = now_;
-  end_ = acting(boundary);
-  end_.strain = wanted_strain_ ? std::move(*wanted_strain_) : start_.strain;
+  end_ = acting(boundary, wanted_strain_.value_or(start_.strain));
   wanted_strain_.reset();
+  audit_loads(boundary, end_.strain);
+  check_motions(boundary, map_, kinematics_);
   find_drives(boundary);
   driven_to_ = committed_drive_ = 0;
   apply(0);
@@ -154,6 +157,7 @@ void System::apply(double lambda) {
   lambda_ = lambda;
   now_ = start_.blended(end_, lambda);
   for (std::size_t i = 0; i < model_.cables.size(); ++i) model_.cables[i].initial_strain = now_.strain[i];
+  for (std::size_t i = 0; i < model_.cables.size(); ++i) model_.cables[i].line_load = now_.line[i];
   std::size_t next = 0;
   const auto warm = [&](auto& elements) {
     for (auto& element : elements) element.temperature_change = now_.temperature[next++];
@@ -164,7 +168,7 @@ void System::apply(double lambda) {
   warm(model_.shells);
   for (std::size_t i = 0; i < model_.beams.size(); ++i) {
     auto& beam = model_.beams[i];
-    beam.line_load = now_.line[i];
+    beam.line_load = now_.line[model_.cables.size() + i];
     beam.temperature_gradient = beam.frame.rightCols<2>().transpose() * now_.temperature_gradient[i];
   }
   model_.acceleration = now_.acceleration;

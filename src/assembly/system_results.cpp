@@ -147,10 +147,8 @@ System::NodalForces System::reactions() const {
     if (map_.rotation_block[node] >= 0 && !is_hinge)
       result.moment[node] = held_part(map_.rotation_block[node]);
   }
-  for (const auto& constraint : model_.constraints) {  // what holds it is no support
-    const auto& first = constraint.terms.front();
+  for (const auto& first : kinematics_.constrained())  // what holds it is no support
     result.force[first.node][first.component] = 0;
-  }
   return result;
 }
 

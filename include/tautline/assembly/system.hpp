@@ -37,7 +37,7 @@ struct OutOfBalance {
 /// What acts on the model at one end of a stage, node by node, facet by facet, group by group.
 struct Acting {
   Points force, moment;              ///< dead nodal loads, of all kinds together [N], [N m]
-  Points line;                       ///< distributed dead load of each beam, in `force` already [N/m]
+  Points line;  ///< along each cable (of catenaries, without weight), then beam (in `force` already) [N/m]
   std::vector<double> pressure;      ///< on membranes, then shells [Pa]
   std::vector<double> temperature;   ///< change of cables, then beams, membranes, shells [K]
   Points temperature_gradient;       ///< of each beam [K/m]
@@ -225,8 +225,12 @@ class System : public analysis::PathProblem {
   NodalForces external() const;
   /// Internal less external force on every node, what links carry put to their leaders.
   NodalForces nodal_residual() const;
-  Acting acting(const Boundary& boundary) const;
+  /// What acts under the loads of `boundary` with these initial strains of the cables: dead loads of the
+  /// structure as drawn, wherever it is now.
+  Acting acting(const Boundary& boundary, const std::vector<double>& strains) const;
   void add_element_loads(const model::Load& load, Acting& to) const;
+  /// Compares what each load is by its definition with what acts of it. @throws std::logic_error if they differ
+  void audit_loads(const Boundary& boundary, const std::vector<double>& strains) const;
   void find_drives(const Boundary& boundary);
   /// K dx for an increment of all unknowns; complete in this rank's own entries.
   std::vector<double> stiffness_times(const std::vector<double>& increment) const;
