@@ -258,10 +258,8 @@ System::NodalForces System::ground_springs() const {
   return result;
 }
 
-System::NodalForces System::applied() const {
+System::NodalForces System::external() const {
   NodalForces result{now_.force, now_.moment};
-  for (std::size_t node = 0; node < model_.nodes.size(); ++node)
-    if (!map_.rotational[node]) result.moment[node].setZero();
   const auto add_pressure = [&](const auto& facets, std::size_t first) {
     for (std::size_t i = 0; i < facets.size(); ++i) {
       const double pressure = now_.pressure[first + i];
@@ -273,6 +271,11 @@ System::NodalForces System::applied() const {
   };
   add_pressure(model_.membranes, 0);
   add_pressure(model_.shells, model_.membranes.size());
+  return result;
+}
+
+System::NodalForces System::applied() const {
+  NodalForces result = external();
   for (const auto& cable : model_.cables) {
     if (model_.groups[cable.group].kind != ElementKind::catenary) continue;
     // The catenary's end forces, weight included; at the ends they add up to the weight turned round.

@@ -76,38 +76,6 @@ System::System(model::Model model)
   for (const auto& group : model_.groups)
     if (model::is_cable_like(group.kind))
       support_stiffness_ = std::max(support_stiffness_, group.cable.axial_stiffness / size_);
-  find_rounding();
-}
-
-void System::find_rounding() {
-  constexpr double of_lines = 5e-15, of_facets = 1e-13;  // some ten and some hundred units in the last place
-  double relative = of_lines;
-  const auto note = [&](double& to, double value) { to = std::max(to, relative * value); };
-  for (const auto& group : model_.groups) {
-    if (model::is_cable_like(group.kind)) note(rounding_force_of_lines_, group.cable.axial_stiffness);
-    if (group.kind == model::ElementKind::beam) note(rounding_force_of_lines_, group.beam.axial_stiffness);
-    relative = of_facets;
-    if (group.kind == model::ElementKind::membrane)
-      note(rounding_force_, group.membrane.tension_stiffness * size_);
-    if (group.kind == model::ElementKind::shell) {
-      const double stretching = group.shell.young_modulus * group.shell.thickness;
-      note(rounding_force_, stretching * size_);
-      note(rounding_moment_, stretching * group.shell.thickness * size_);
-    }
-    relative = of_lines;
-  }
-  for (const auto& beam : model_.beams) {
-    const auto& section = model_.groups[beam.group].beam;
-    const double length = (model_.nodes[beam.nodes[1]] - model_.nodes[beam.nodes[0]]).norm();
-    const double bending = std::max(section.bending_stiffness_2, section.bending_stiffness_3);
-    note(rounding_force_of_lines_, bending / (length * length));
-    note(rounding_moment_, std::max(section.axial_stiffness * length, bending / length));
-  }
-  const double sum =
-      std::sqrt(static_cast<double>(model_.nodes.size()));  // of random errors, as norms see them
-  rounding_force_ = sum * std::max(rounding_force_, rounding_force_of_lines_);
-  rounding_force_of_lines_ *= sum;
-  rounding_moment_ *= sum;
 }
 
 void System::set_state(const model::State& state) {
@@ -214,8 +182,7 @@ void System::add_forces(const model::State& state, const Kinematics& at, std::ve
     expansion.add(values.cwiseAbs(), magnitude);
   };
   for_each_own([&](const auto& element) {
-    add(element.nodes, uses_rotations(model_, element),
-        contribution(model_, state, element, Want::force).force);
+    add(element.nodes, uses_rotations(model_, element), answer(state, element, Want::force).force);
   });
   for_each_pressed([&](const model::FacetNodes& nodes, double pressure) {
     const Expansion expansion(at, map_, nodes, false);
@@ -295,7 +262,7 @@ std::vector<double> System::stiffness_times(const std::vector<double>& increment
   std::vector<double> product(origin_.size(), 0.0);
   for_each_own([&](const auto& element) {
     const Expansion expansion(kinematics_, map_, element.nodes, uses_rotations(model_, element));
-    const auto c = contribution(model_, state_, element, Want::tangent);
+    const auto c = answer(state_, element, Want::tangent);
     expansion.add((c.tangent * expansion.template rows_of<VecX>(increment)).eval(), product);
   });
   return product;

@@ -84,7 +84,7 @@ void Context::set_system(model::Model mesh) {
 }
 
 bool Context::is_lost(const assembly::OutOfBalance& start) const {
-  return !equilibrium_known && start.before > system_->rounding_force() && start.before >= start.force / 2;
+  return !equilibrium_known && start.before >= start.force / 2 && start.before > system_->rounding().force;
 }
 
 void Context::note_model() {
@@ -101,6 +101,12 @@ void Context::save() {
   la::on_root([&] { output::write_results(path("results.json"), results); });
 }
 
+void Context::warn(const std::string& code, const std::string& message, const std::string& where) {
+  const std::string place = where.empty() ? fmt::format("step \"{}\"", step_name) : where;
+  results["warnings"].push_back({{"code", code}, {"message", message}, {"where", place}});
+  progress.say(fmt::format("warning: {}: {}", place, message));
+}
+
 template <class Picture>
 void Context::draw_any(const std::string& name, const std::string& caption, const Picture& picture) {
   if (!pictures_ || !root_) return;
@@ -115,8 +121,7 @@ void Context::draw_any(const std::string& name, const std::string& caption, cons
     output::draw(sized, path(file));
     results["pictures"].push_back({{"file", file}, {"caption", caption}, {"step", step_name}});
   } catch (const LibraryError& error) {
-    progress.say(fmt::format("warning: no pictures: {}", error.what()));
-    results["warnings"].push_back(error.what());
+    warn("no_pictures", error.what());
     pictures_ = false;
   }
 }
