@@ -4,6 +4,7 @@
 /// the parallel layout.
 
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -64,7 +65,6 @@ struct Place : analysis::PathProblem::Kept {
 struct Rest {
   model::State state;
   Acting acting;
-  std::vector<Vec3> turned;              ///< rotation vectors of supports so far, by node [rad]
   std::vector<double> stiffness_factor;  ///< of the cables, see model::Cable
 };
 
@@ -186,8 +186,12 @@ class System : public analysis::PathProblem {
   void add_forces(const model::State& state, const Kinematics& at, std::vector<double>& force,
                   std::vector<double>& magnitude) const;
   std::vector<double> out_of_balance() const;
+  /// The same along the axes of supports, moments about them also where rotations are held in part.
+  std::vector<double> nodal_imbalance() const;
   Acting acting(const Boundary& boundary) const;
   void add_element_loads(const model::Load& load, Acting& to) const;
+  std::set<int> turned_nodes(const Boundary& boundary) const;
+  Vec3 spin_to(int node, const Vec3& target) const;
   void find_drives(const Boundary& boundary);
   /// K dx for an increment of all unknowns; complete in this rank's own entries.
   std::vector<double> stiffness_times(const std::vector<double>& increment) const;
@@ -195,6 +199,8 @@ class System : public analysis::PathProblem {
   std::vector<double> gathered(const std::vector<double>& own_complete) const;
   void apply(double lambda);
   void find_rounding();
+  /// Whether a dead load on a node adds to the tangent: at the end of an arm, or on a rotation vector.
+  bool load_bends(int node) const;
   /// Tangent with the element's state given by `state_of(element)`.
   template <class StateOf>
   void assemble_tangent(la::SymmetricMatrix& k, const StateOf& state_of);
@@ -208,7 +214,6 @@ class System : public analysis::PathProblem {
   Acting start_, end_, now_;
   std::vector<double> start_residual_;  // of all unknowns, ramped out
   std::vector<Drive> drives_;
-  std::vector<Vec3> turned_;  // rotation vectors of driven nodes so far [rad], by node
   std::optional<std::vector<double>> wanted_strain_;
   double lambda_ = 1, driven_to_ = 0, committed_drive_ = 0, size_ = 1;
   double support_stiffness_ = 1;
