@@ -249,7 +249,7 @@ void System::audit_loads(const Boundary& boundary, const std::vector<double>& st
   constexpr double rounding = 1e-10;
   if (boundary.loads.empty()) return;
   Kinematics drawn(model_, map_);
-  drawn.hold(boundary.supports);
+  drawn.hold(boundary.supports, {});
   const auto motions = rigid_motions(model_, size_);
   const auto compare = [&](const Load& load, const char* what, double defined, double found, double size) {
     if (!(std::abs(found - defined) <= rounding * size))

@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
-#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -202,49 +200,6 @@ Acting System::acting(const Boundary& boundary, const std::vector<double>& strai
   }
   add_weights(model_, result);
   return result;
-}
-
-void System::find_drives(const Boundary& boundary) {
-  struct Target {
-    Vec3 value = Vec3::Zero();
-    std::string load;
-  };
-  std::map<int, Target> displacements, rotations;  // by node; several loads add up
-  for (const auto& load : boundary.loads) {
-    if (!load.displacement && !load.rotation) continue;
-    auto nodes = model_.nodes_of(load.on);  // of the mesh: whole edges move
-    nodes.insert(nodes.end(), load.nodes.begin(), load.nodes.end());
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    const auto add = [&](const std::optional<Vec3>& motion, std::map<int, Target>& to) {
-      if (!motion) return;
-      for (const int node : nodes) {
-        to[node].value += *motion;
-        to[node].load = load.name;
-      }
-    };
-    add(load.displacement, displacements);
-    add(load.rotation, rotations);
-  }
-  drives_.clear();
-  const auto drive = [&](int node, int block, const Target& target, const Vec3& so_far) {
-    const Vec3 wish = block < 0 ? target.value : kinematics_.unknown_of(block, target.value);
-    const Vec3 way = block < 0 ? wish : kinematics_.unknown_of(block, target.value - so_far);
-    Drive found{block, Vec3::Zero()};
-    for (int c = 0; c < 3; ++c) {
-      if (block >= 0 && held()[static_cast<std::size_t>(3 * block + c)])
-        found.way[c] = way[c];
-      else if (std::abs(wish[c]) > 1e-12 * target.value.norm())
-        throw ModelError(fmt::format(
-            "load \"{}\" moves node {} in a direction that no support holds: only a support can be moved, so "
-            "add that direction to a support of the node",
-            target.load, node + 1));
-    }
-    if (!found.way.isZero(0)) drives_.push_back(found);
-  };
-  for (const auto& [node, target] : displacements)
-    drive(node, map_.displacement_block[node], target, state_.displacement[node]);
-  for (const auto& [node, target] : rotations) drive(node, map_.rotation_block[node], target, turned_[node]);
 }
 
 System::NodalForces System::ground_springs() const {

@@ -152,8 +152,18 @@ void check_links(const Model& model, Faults& faults) {
   };
   chain(model.cyclic_pairs);
   links_in_order(model);
+  std::vector<bool> turned(model.nodes.size(), false);
+  for (const auto& link : model.links) turned[link.follower] = !link.rotation_free;
+  for (const auto& pair : model.cyclic_pairs) turned[pair.follower] = true;
   for (const auto& support : model.supports)
     for (const int node : support.nodes) {
+      const bool rotation = support.fixed[3] || support.fixed[4] || support.fixed[5];
+      if (rotation && turned[node])
+        faults.add(
+            "support \"{}\" holds a rotation of node {}, which turns with another node through a link: "
+            "support "
+            "that one",
+            support.name, node + 1);
       const bool held = support.fixed[0] || support.fixed[1] || support.fixed[2];
       if (held && followed[node] > 0)
         faults.add(

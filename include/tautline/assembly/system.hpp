@@ -4,6 +4,7 @@
 /// the parallel layout.
 
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -65,7 +66,6 @@ struct Place : analysis::PathProblem::Kept {
 struct Rest {
   model::State state;
   Acting acting;
-  std::vector<Vec3> turned;              ///< rotation vectors of supports so far, by node [rad]
   std::vector<double> stiffness_factor;  ///< of the cables, see model::Cable
 };
 
@@ -232,6 +232,10 @@ class System : public analysis::PathProblem {
   /// Compares what each load is by its definition with what acts of it. @throws std::logic_error if they
   /// differ
   void audit_loads(const Boundary& boundary, const std::vector<double>& strains) const;
+  /// The same along the axes of supports, moments about them also where rotations are held in part.
+  std::vector<double> nodal_imbalance() const;
+  std::set<int> turned_nodes(const Boundary& boundary) const;
+  Vec3 spin_to(int node, const Vec3& target) const;
   void find_drives(const Boundary& boundary);
   /// K dx for an increment of all unknowns; complete in this rank's own entries.
   std::vector<double> stiffness_times(const std::vector<double>& increment) const;
@@ -242,6 +246,8 @@ class System : public analysis::PathProblem {
   /// Norms over the nodes of forces and of moments, of `value(block, component)` in this rank's blocks.
   template <class Value>
   Vec<2> norms_by_kind(const Value& value) const;
+  /// Whether a dead load on a node adds to the tangent: at the end of an arm, or on a rotation vector.
+  bool load_bends(int node) const;
   /// Tangent with what each element adds given by `contribution_of(element)`.
   template <class ContributionOf>
   void assemble_tangent(la::SymmetricMatrix& k, const ContributionOf& contribution_of);
@@ -262,7 +268,6 @@ class System : public analysis::PathProblem {
   Acting start_, end_, now_;
   std::vector<double> start_residual_;  // of all unknowns, ramped out
   std::vector<Drive> drives_;
-  std::vector<Vec3> turned_;  // rotation vectors of driven nodes so far [rad], by node
   std::optional<std::vector<double>> wanted_strain_;
   double lambda_ = 1, driven_to_ = 0, committed_drive_ = 0, size_ = 1;
   double support_stiffness_ = 1;
