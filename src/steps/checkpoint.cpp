@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* format_name = "tautline-checkpoint";
-constexpr int format_version = 2;
+constexpr int format_version = 3;
 constexpr const char* point_file = "point.bin";
 
 double now_seconds() {

@@ -28,10 +28,10 @@ struct StagePoint {
 /// What a checkpoint holds.
 struct Checkpoint {
   int steps_done = 0;
-  Json results = {{"steps", Json::array()}};  ///< results.json as far as it goes
-  std::vector<std::string> acting_loads;      ///< as Context's
-  std::optional<assembly::Rest> rest;         ///< of the system after the steps done, if there is one
-  std::optional<StagePoint> point;            ///< within the step that comes next
+  Json results = {{"steps", Json::array()}, {"warnings", Json::array()}};  ///< results.json as far as it goes
+  std::vector<std::string> acting_loads;                                   ///< as Context's
+  std::optional<assembly::Rest> rest;  ///< of the system after the steps done, if there is one
+  std::optional<StagePoint> point;     ///< within the step that comes next
 };
 
 /// Writes checkpoints into a directory of their own: one for each step done, and the latest point of a path.

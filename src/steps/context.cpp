@@ -99,6 +99,12 @@ void Context::save() {
   la::on_root([&] { output::write_results(path("results.json"), results); });
 }
 
+void Context::warn(const std::string& code, const std::string& message, const std::string& where) {
+  const std::string place = where.empty() ? fmt::format("step \"{}\"", step_name) : where;
+  results["warnings"].push_back({{"code", code}, {"message", message}, {"where", place}});
+  progress.say(fmt::format("warning: {}: {}", place, message));
+}
+
 template <class Picture>
 void Context::draw_any(const std::string& name, const std::string& caption, const Picture& picture) {
   if (!pictures_ || !root_) return;
@@ -113,8 +119,7 @@ void Context::draw_any(const std::string& name, const std::string& caption, cons
     output::draw(sized, path(file));
     results["pictures"].push_back({{"file", file}, {"caption", caption}, {"step", step_name}});
   } catch (const LibraryError& error) {
-    progress.say(fmt::format("warning: no pictures: {}", error.what()));
-    results["warnings"].push_back(error.what());
+    warn("no_pictures", error.what());
     pictures_ = false;
   }
 }

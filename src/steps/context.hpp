@@ -68,6 +68,9 @@ class Context {
   std::string path(const std::string& name) const { return directory_ + "/" + name; }
   /// Writes results.json (rank 0).
   void save();
+  /// Notes in results.json what the user must not overlook, and tells it: `code` for programs, `where` the
+  /// step in hand or what is named. Told alike by every rank.
+  void warn(const std::string& code, const std::string& message, const std::string& where = {});
   /// Draws DIR/pictures/<step>_<name>.png (rank 0) and notes it with its caption; a failure to draw is told
   /// once and noted.
   void draw(const std::string& name, const std::string& caption, const output::View& view);

@@ -239,7 +239,7 @@ Json run_step(Context& context, const FormFindingOptions& options) {
   if (!frame.is_null()) entry.update(frame);
   if (coupled) entry["rear"] = coupled->details;
   if (!found.warnings.empty()) entry["warnings"] = found.warnings;
-  for (const auto& warning : found.warnings) context.progress.say("warning: " + warning);
+  for (const auto& warning : found.warnings) context.warn("form_finding", warning);
   draw_convergence(context, found);
   if (!found.converged && !found.details.contains("worst")) return entry;
   if (!found.converged && context.surface) return entry;

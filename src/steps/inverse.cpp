@@ -181,10 +181,10 @@ void note_warnings(Context& context, Json& entry) {
   const auto warnings = warnings_of(entry);
   entry["warnings"] = warnings;
   if (warnings.empty()) return;
-  std::string text = fmt::format("step \"{}\": {}", context.step_name, warnings.front());
+  std::string text = warnings.front();
   if (warnings.size() > 1)
     text += fmt::format("; {} more in its \"warnings\" of results.json", warnings.size() - 1);
-  context.results["warnings"].push_back(text);
+  context.warn("inverse", text);
 }
 
 Json status_json(const analysis::GaussNewtonSummary& found) {

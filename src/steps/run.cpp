@@ -68,6 +68,7 @@ Json start_results(const deck::Deck& deck) {
   results["reason"] = "the run has not come to its end";
   results["steps"] = Json::array();
   results["pictures"] = Json::array();
+  results["warnings"] = Json::array();
   return results;
 }
 
@@ -135,6 +136,7 @@ int take_up(Context& context, const Checkpoint& checkpoint, const std::string& f
       std::visit([&](const auto& options) { return run_step(context, options); }, step.options);
   }
   context.results["steps"] = checkpoint.results["steps"];
+  context.results["warnings"] = checkpoint.results["warnings"];
   context.results["resumed"] = {{"from", from}, {"steps", checkpoint.steps_done}};
   if (checkpoint.point) context.results["resumed"]["lambda"] = checkpoint.point->place.lambda;
   context.acting_loads = checkpoint.acting_loads;
@@ -145,7 +147,11 @@ int take_up(Context& context, const Checkpoint& checkpoint, const std::string& f
 }
 
 void leave_checkpoint(Context& context, int steps_done) {
-  Checkpoint checkpoint{steps_done, {{"steps", context.results["steps"]}}, context.acting_loads, {}, {}};
+  Checkpoint checkpoint{steps_done,
+                        {{"steps", context.results["steps"]}, {"warnings", context.results["warnings"]}},
+                        context.acting_loads,
+                        {},
+                        {}};
   if (context.has_system()) checkpoint.rest = context.system().rest();
   context.checkpoints.save(checkpoint);
 }
