@@ -16,6 +16,8 @@ constexpr double elasticity = 1;  // E h of the film over its mean stress
 constexpr int max_steps = 30;     // of Newton's method
 constexpr int max_rounds = 4;     // after each the stress of the moved film is that of a new reference
 constexpr int max_halvings = 6;
+constexpr double closer = 1e-3;     // than the step's tolerance, which one step of Newton's method gives
+constexpr double rounding = 1e-12;  // of forces, over the largest
 constexpr double first_shift = 1e-3, largest_shift = 1e3;  // of the stiffness at each node
 
 /// Tangents of the facet's surface at its middle, in its frame; columns.
@@ -157,7 +159,7 @@ void FilmBalance::refer_anew() {
 SettledFilm settle_film(const ElasticNet& net, const Points& nodes, double tolerance) {
   FilmBalance balance(net, to_coordinates(nodes));
   for (int round = 0; round < max_rounds; ++round) {
-    const double limit = tolerance * balance.scale();
+    const double limit = std::max(closer * tolerance, rounding) * balance.scale();
     if (round > 0 && balance.largest() <= limit) break;
     balance.find_rest(limit);
     balance.refer_anew();  // quadrilaterals are given the mean of their points
