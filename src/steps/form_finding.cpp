@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
-#include <tautline/element/membrane.hpp>
 #include <tautline/model/response.hpp>
 #include <tautline/model/section.hpp>
 
@@ -121,8 +120,8 @@ void judge_film(Context& context, const FormNet& net, const Form& found, Json& e
       std::count_if(uneven.begin(), uneven.end(), [](double u) { return u > noted_unevenness; });
   const std::string text = fmt::format(
       "the stress of the film deviates by up to {:.2g} % from the one asked for, by more than {:.0f} % in {} "
-      "of "
-      "{} facets; largest in \"{}\" at ({:.4g}, {:.4g}, {:.4g}): a finer or more even mesh there, a cable or "
+      "of {} facets; largest in \"{}\" at ({:.4g}, {:.4g}, {:.4g}): a finer or more even mesh there, a cable "
+      "or "
       "a ring at points that hold the film, or more equal prestress in both directions evens it out",
       100 * *worst, 100 * noted_unevenness, many, uneven.size(),
       context.structure.groups[static_cast<std::size_t>(membrane.group)].name, middle.x(), middle.y(),
