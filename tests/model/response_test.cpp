@@ -57,8 +57,8 @@ TEST(GroupSummary, OfAGroupWithoutElementsIsZero) {
   EXPECT_EQ(summary.principal_max, 0);
 }
 
-/// A mast of one beam, 4 m high, whose weight of 30 N/m its two ends share: nothing is moved, so that each end carries
-/// half, in compression below and in tension above.
+/// A mast of one beam, 4 m high, whose weight of 30 N/m its two ends share: nothing is moved, so that each
+/// end carries half, in compression below and in tension above.
 TEST(GroupSummary, HasTheAxialForceOfBothEndsOfABeamWhicheverComesFirst) {
   for (const bool upwards : {true, false}) {
     Model model;

@@ -13,15 +13,16 @@ namespace {
 
 const std::set<std::string> by_themselves{"Hz", "factor", "critical N", "surface m", "kg", "count"};
 
-/// Factors are found from differences of tangents and printed to seven digits; critical points are searched for to
-/// 1e-6 of the load.
+/// Factors are found from differences of tangents and printed to seven digits; critical points are searched
+/// for to 1e-6 of the load.
 double looser(const std::string& unit) {
   return unit == "factor" || unit == "critical N" ? 20 : 1;
 }
 
 std::string text(const Quantity& q) {
-  return q.nature == Nature::scalar ? fmt::format("{:.10g}", q.value[0])
-                                    : fmt::format("({:.10g}, {:.10g}, {:.10g})", q.value[0], q.value[1], q.value[2]);
+  return q.nature == Nature::scalar
+             ? fmt::format("{:.10g}", q.value[0])
+             : fmt::format("({:.10g}, {:.10g}, {:.10g})", q.value[0], q.value[1], q.value[2]);
 }
 
 }  // namespace
@@ -71,7 +72,8 @@ std::vector<Difference> compare(const Outcome& expected, const Outcome& found, d
   for (const auto& [key, b] : found.numbers)
     if (expected.numbers.count(key) == 0)
       list.push_back({key + " is there in one alone", std::numeric_limits<double>::infinity()});
-  std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.measure > b.measure; });
+  std::stable_sort(list.begin(), list.end(),
+                   [](const auto& a, const auto& b) { return a.measure > b.measure; });
   return list;
 }
 

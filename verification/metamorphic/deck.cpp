@@ -42,8 +42,9 @@ std::string model_block(const Json& model) {
     }
     text += fmt::format("  {}:\n", part.key());
     for (const auto& item : part.value().items())
-      text += part.value().is_object() ? fmt::format("    {}: {}\n", flow(Json(item.key())), flow(item.value()))
-                                       : fmt::format("    - {}\n", flow(item.value()));
+      text += part.value().is_object()
+                  ? fmt::format("    {}: {}\n", flow(Json(item.key())), flow(item.value()))
+                  : fmt::format("    - {}\n", flow(item.value()));
   }
   return text;
 }
@@ -203,9 +204,10 @@ double stiffness_of(const Json& deck) {
     most = std::max({most, value("axial_stiffness"), value("tension_stiffness") * size});
     if (!section.contains("material")) continue;
     const double modulus = deck["materials"][section["material"].get<std::string>()]["young_modulus"];
-    const double width = std::max({value("width"), value("diameter"), value("side"), value("diameter_start")});
-    const double area = std::max({value("area"), std::pow(std::max(width, value("height")), 2),
-                                  value("thickness") * size});
+    const double width =
+        std::max({value("width"), value("diameter"), value("side"), value("diameter_start")});
+    const double area =
+        std::max({value("area"), std::pow(std::max(width, value("height")), 2), value("thickness") * size});
     most = std::max(most, modulus * area);
   }
   return most;

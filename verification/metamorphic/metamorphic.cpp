@@ -1,5 +1,6 @@
 /// @file
-/// Runs relations on random structures and tells which do not hold, each with the smallest deck that shows it.
+/// Runs relations on random structures and tells which do not hold, each with the smallest deck that shows
+/// it.
 ///
 ///   metamorphic [--relation NAME]... [--count N] [--seed FIRST] [--work DIRECTORY] [--shrink SECONDS]
 ///   metamorphic --relation NAME --seed SEED --deck FILE.json     one structure again, e.g. a smallest one
@@ -83,8 +84,8 @@ void print_differences(const Verdict& verdict) {
 }
 
 /// Makes the deck as small as it gets, prints it and leaves it where it can be run again.
-void report(const Relation& relation, const Json& deck, std::uint64_t seed, Runner& runner, const Request& request,
-            const Verdict& verdict) {
+void report(const Relation& relation, const Json& deck, std::uint64_t seed, Runner& runner,
+            const Request& request, const Verdict& verdict) {
   fmt::print("FAILS {} seed {}\n", relation.name, seed);
   print_differences(verdict);
   const Json small = request.shrink > 0 ? smallest(relation, deck, seed, runner, request.shrink) : deck;
@@ -148,17 +149,20 @@ Tally try_all(const Relation& relation, const Request& request, Runner& runner) 
       ++tally.discarded;
       fmt::print("discarded {} seed {}: {}\n", relation.name, seed, verdict.ends);
     }
-    if (verdict.fails() && ++tally.fails <= most_reported) report(relation, deck, seed, runner, request, verdict);
+    if (verdict.fails() && ++tally.fails <= most_reported)
+      report(relation, deck, seed, runner, request, verdict);
     if (verdict.fails() && tally.fails > most_reported) {
       fmt::print("FAILS {} seed {}\n", relation.name, seed);
       print_differences(verdict);
     }
   }
   tally.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  fmt::print("{:<4} {:<24} {:>4} hold, {:>3} fail, {:>3} discarded, {:>3} do not apply; largest difference {:.2g} of what is allowed; "
-             "{} runs, {:.1f} s\n",
-             tally.well() ? "ok" : "BAD", relation.name, tally.holds, tally.fails, tally.discarded, tally.does_not_apply,
-             tally.worst, tally.runs, tally.seconds);
+  fmt::print(
+      "{:<4} {:<24} {:>4} hold, {:>3} fail, {:>3} discarded, {:>3} do not apply; largest difference {:.2g} "
+      "of what is allowed; "
+      "{} runs, {:.1f} s\n",
+      tally.well() ? "ok" : "BAD", relation.name, tally.holds, tally.fails, tally.discarded,
+      tally.does_not_apply, tally.worst, tally.runs, tally.seconds);
   std::fflush(stdout);
   return tally;
 }

@@ -109,7 +109,8 @@ class Reading {
   /// Nodes that the program adds, at arms and released ends, are in an order of its own.
   void forget_unnamed() {
     if (names_.empty()) return;
-    std::erase_if(outcome_.numbers, [](const auto& item) { return item.first.find('#') != std::string::npos; });
+    std::erase_if(outcome_.numbers,
+                  [](const auto& item) { return item.first.find('#') != std::string::npos; });
   }
 
   void read_step(const Json& step, const std::string& prefix) {
@@ -119,7 +120,8 @@ class Reading {
     if (step.contains("reactions"))
       for (const auto& [support, entry] : step["reactions"].items()) {
         vector(prefix + "reaction " + support, to_vec3(entry["force"]), Nature::polar, "N");
-        if (entry.contains("moment")) vector(prefix + "reaction moment " + support, to_vec3(entry["moment"]), Nature::axial, "N m");
+        if (entry.contains("moment"))
+          vector(prefix + "reaction moment " + support, to_vec3(entry["moment"]), Nature::axial, "N m");
       }
     if (step.contains("stages") && !step["stages"].empty())
       scalar(prefix + "negative pivots", step["stages"].back()["negative_pivots"], "count");
@@ -129,7 +131,8 @@ class Reading {
     for (const char* key : {"critical_lambda", "bifurcation_lambda", "limit_lambda"})
       if (step.contains(key)) scalar(prefix + key, step[key], "factor");
     if (step.contains("surface"))
-      for (const char* key : {"rms", "mean_shift", "rms_direct", "rms_area_weighted", "rms_nodes", "rms_best_fit"})
+      for (const char* key :
+           {"rms", "mean_shift", "rms_direct", "rms_area_weighted", "rms_nodes", "rms_best_fit"})
         scalar(prefix + "surface " + key, step["surface"][key], "surface m");
     if (step.contains("path")) read_path(step["path"], prefix);
   }
@@ -188,7 +191,8 @@ class Reading {
     for (const char* column : {"node_1", "node_2", "node_3", "node_4"}) {
       const bool line = kind == "cable" || kind == "beam";
       if (line && (column[5] == '3' || column[5] == '4')) continue;
-      if (!table.text(row, column).empty()) nodes.push_back(name(static_cast<int>(table.number(row, column))));
+      if (!table.text(row, column).empty())
+        nodes.push_back(name(static_cast<int>(table.number(row, column))));
     }
     std::sort(nodes.begin(), nodes.end());
     return fmt::format("{} {} {} ", kind, table.text(row, "group"), fmt::join(nodes, "-"));
@@ -296,7 +300,8 @@ std::string only_checkpoint(const std::string& run, int steps_done) {
   return from;
 }
 
-void run_deck(const std::string& text, const std::string& directory, const std::string& from, Outcome& outcome) {
+void run_deck(const std::string& text, const std::string& directory, const std::string& from,
+              Outcome& outcome) {
   Progress silent;
   const auto deck = deck::parse_deck(text, directory + ".yaml");
   outcome.end = word(steps::run(deck, {directory, false, from}, silent));
@@ -371,10 +376,12 @@ void Runner::run_on_two_ranks(const std::vector<Json>& decks) {
   std::string clean = "env";
   for (char** entry = environ; *entry != nullptr; ++entry) {
     const std::string name = std::string(*entry).substr(0, std::string(*entry).find('='));
-    if (name.rfind("PMIX_", 0) == 0 || name.rfind("OMPI_COMM", 0) == 0 || name.rfind("OMPI_MCA", 0) == 0) clean += " -u " + name;
+    if (name.rfind("PMIX_", 0) == 0 || name.rfind("OMPI_COMM", 0) == 0 || name.rfind("OMPI_MCA", 0) == 0)
+      clean += " -u " + name;
   }
-  const std::string command = fmt::format("{} {} -n 2 --oversubscribe --bind-to none {} --run-files {} > {}/log 2>&1", clean,
-                                          launcher().mpiexec, launcher().program, list, place);
+  const std::string command =
+      fmt::format("{} {} -n 2 --oversubscribe --bind-to none {} --run-files {} > {}/log 2>&1", clean,
+                  launcher().mpiexec, launcher().program, list, place);
   const int code = std::system(command.c_str());
   for (std::size_t i = 0; i < decks.size(); ++i) {
     const std::string directory = fmt::format("{}/{}", place, i);
@@ -411,8 +418,8 @@ Outcome Runner::run(const Job& job) {
       outcome.end = "done";
       return outcome;
     }
-    run_deck(text, directory, job.way == Job::Way::resume ? only_checkpoint(before, job.steps_done) : std::string(),
-             outcome);
+    run_deck(text, directory,
+             job.way == Job::Way::resume ? only_checkpoint(before, job.steps_done) : std::string(), outcome);
   } catch (const std::exception& error) {
     outcome.end = end_of(error);
     outcome.message = error.what();

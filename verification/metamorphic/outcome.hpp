@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// Running a deck in this process, and its results as numbers that know how they turn and what they are measured in.
+/// Running a deck in this process, and its results as numbers that know how they turn and what they are
+/// measured in.
 
 #include <map>
 #include <string>
@@ -14,8 +15,8 @@ enum class Nature { scalar, polar, axial };
 
 struct Quantity {
   Nature nature = Nature::scalar;
-  std::string unit;             ///< "m", "N", "N m", "N/m", "Hz", "1/s2", "-", "rad", ...
-  Vec3 value = Vec3::Zero();    ///< of a scalar the first component
+  std::string unit;           ///< "m", "N", "N m", "N/m", "Hz", "1/s2", "-", "rad", ...
+  Vec3 value = Vec3::Zero();  ///< of a scalar the first component
 
   static Quantity scalar(double value, std::string unit) {
     return {Nature::scalar, std::move(unit), Vec3(value, 0, 0)};
@@ -53,7 +54,8 @@ class Runner {
  public:
   explicit Runner(std::string directory);
   Outcome run(const Job& job);
-  /// Runs decks on two ranks in one go, for jobs to come. `mpirun` starts processes best from one that has not begun MPI.
+  /// Runs decks on two ranks in one go, for jobs to come. `mpirun` starts processes best from one that has
+  /// not begun MPI.
   void run_on_two_ranks(const std::vector<Json>& decks);
 
  private:
@@ -68,8 +70,8 @@ struct Launcher {
 };
 Launcher& launcher();
 
-/// What such processes do: run the decks that a file lists, each with its results in a directory of its name without
-/// the ending, and how it ended in a file beside that. Collective.
+/// What such processes do: run the decks that a file lists, each with its results in a directory of its name
+/// without the ending, and how it ended in a file beside that. Collective.
 void run_files(const std::string& list);
 
 /// The words of Outcome::end for an exception.

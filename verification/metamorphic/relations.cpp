@@ -7,8 +7,8 @@ namespace tautline::metamorphic {
 const std::vector<Relation>& relations() {
   static const std::vector<Relation> all = [] {
     std::vector<Relation> list;
-    for (auto* part : {relations_of_description, relations_of_elements, relations_of_loads, relations_of_symmetry, relations_of_runs,
-                       relations_of_analyses})
+    for (auto* part : {relations_of_description, relations_of_elements, relations_of_loads,
+                       relations_of_symmetry, relations_of_runs, relations_of_analyses})
       for (auto& relation : part()) list.push_back(std::move(relation));
     return list;
   }();

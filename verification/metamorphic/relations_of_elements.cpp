@@ -80,6 +80,15 @@ Json one_by_one(const Json& deck, const std::string& group, Change&& change) {
       }
       item["on"] = on;
     }
+  for (auto& step : result["steps"])
+    if (step.contains("unknowns"))
+      for (auto& unknown : step["unknowns"]) {
+        Json on = Json::array();
+        for (const auto& name : unknown["on"])
+          if (name != group) on.push_back(name);
+        for (const auto& name : names) on.push_back(name);
+        unknown["on"] = on;
+      }
   return result;
 }
 
@@ -123,10 +132,17 @@ std::optional<Trial> initial_state(const Json& deck, Random& random) {
     const double strain = prestrain_of(deck, *group, element), length = length_of(deck, element);
     forget_state(state);
     switch (random.whole(0, 3)) {
-      case 0: state["tension"] = stiffness * strain; break;
-      case 1: state["prestrain"] = strain; break;
-      case 2: state["force_density"] = stiffness * strain / length; break;
-      default: state["unstressed_length"] = length / (1 + strain);
+      case 0:
+        state["tension"] = stiffness * strain;
+        break;
+      case 1:
+        state["prestrain"] = strain;
+        break;
+      case 2:
+        state["force_density"] = stiffness * strain / length;
+        break;
+      default:
+        state["unstressed_length"] = length / (1 + strain);
     }
   });
   Trial trial;
@@ -158,9 +174,11 @@ std::optional<Trial> heat_and_prestrain(const Json& deck, Random& random) {
   trial.jobs = {{heated}, {strained}};
   trial.judge = [g = *group](const Outcomes& o) {
     auto a = under_one_name(o[0], g), b = under_one_name(o[1], g);
-    for (auto* side : {&a, &b})  // an unstressed length is that at the reference temperature, and so is the mass
+    for (auto* side :
+         {&a, &b})  // an unstressed length is that at the reference temperature, and so is the mass
       std::erase_if(side->numbers, [](const auto& item) {
-        return item.first.find("group") != std::string::npos || item.first.find("unstressed") != std::string::npos || item.first == "mass";
+        return item.first.find("group") != std::string::npos ||
+               item.first.find("unstressed") != std::string::npos || item.first == "mass";
       });
     return compare(a, b, usual_tolerance);
   };
@@ -169,14 +187,23 @@ std::optional<Trial> heat_and_prestrain(const Json& deck, Random& random) {
 
 bool all_taut(const Outcome& outcome) {
   for (const auto& [key, q] : outcome.numbers)
-    if (key.rfind("cable ", 0) == 0 && key.find(" tension") != std::string::npos && q.value[0] <= 0) return false;
+    if (key.rfind("cable ", 0) == 0 && key.find(" tension") != std::string::npos && q.value[0] <= 0)
+      return false;
   return true;
+}
+
+/// Whether no bar is in compression and no cable slack, in any step.
+bool taut_all_along(const Outcome& outcome) {
+  for (const auto& [key, q] : outcome.numbers)
+    if (key.find(" tension_min") != std::string::npos && q.value[0] <= 0) return false;
+  return all_taut(outcome);
 }
 
 /// Summaries of groups hold other figures for bars.
 Outcome of_elements(const Outcome& outcome) {
   Outcome result = outcome;
-  std::erase_if(result.numbers, [](const auto& item) { return item.first.find(" axial_") != std::string::npos; });
+  std::erase_if(result.numbers,
+                [](const auto& item) { return item.first.find(" axial_") != std::string::npos; });
   return result;
 }
 
@@ -188,7 +215,8 @@ std::optional<Trial> bar_for_cable(const Json& deck, Random& random) {
     if (kind == "cable" && random.chance(0.7)) {
       bool can = true;  // bars know tensions and force densities only
       for (const auto& [name, group] : deck["groups"].items())
-        if (group.value("section", "") == item.key()) can = can && !group.contains("prestrain") && !group.contains("unstressed_length");
+        if (group.value("section", "") == item.key())
+          can = can && !group.contains("prestrain") && !group.contains("unstressed_length");
       if (can) kind = "bar", any = true;
     } else if (kind == "bar") {
       kind = "cable";
@@ -199,13 +227,14 @@ std::optional<Trial> bar_for_cable(const Json& deck, Random& random) {
   Trial trial;
   trial.jobs = {{deck}, {other}};
   trial.judge = [](const Outcomes& o) {
-    if (!all_taut(o[0])) return std::vector<Difference>{};
+    if (!taut_all_along(o[0]) || !taut_all_along(o[1])) return std::vector<Difference>{};
     return compare(of_elements(o[0]), of_elements(o[1]), usual_tolerance);
   };
   return trial;
 }
 
-/// Cables as catenaries of a thousandth of their mass. Without load along them their forces differ by (w L / T)^2 / 24.
+/// Cables as catenaries of a thousandth of their mass. Without load along them their forces differ by (w L /
+/// T)^2 / 24.
 std::optional<Trial> light_catenary(const Json& deck, Random& random) {
   const auto group = cable_group(deck, random);
   if (!group) return std::nullopt;
@@ -213,13 +242,21 @@ std::optional<Trial> light_catenary(const Json& deck, Random& random) {
   keep_loads(light, {"force", "displacement", "acceleration", "temperature_change"});
   keep_equilibria(light);  // catenaries have masses of their own
   light["sections"][light["groups"][*group]["section"].get<std::string>()]["mass_per_length"] = 1e-9;
-  Json other = light;
-  other["sections"]["hanging"] = light["sections"][light["groups"][*group]["section"].get<std::string>()];
-  other["sections"]["hanging"]["kind"] = "catenary";
-  other["groups"][*group]["section"] = "hanging";
-  tidy(light);
-  tidy(other);
-  return pair(light, other, unchanged, usual_tolerance);
+  Json hanging = one_by_one(light, *group, [&](Json& state, const Json& element) {
+    const double strain = prestrain_of(light, *group, element);
+    forget_state(state);
+    state["unstressed_length"] = length_of(light, element) / (1 + strain);
+  });
+  hanging["sections"][light["groups"][*group]["section"].get<std::string>()]["kind"] = "catenary";
+  Trial trial;
+  trial.jobs = {{light}, {hanging}};
+  trial.judge = [g = *group](const Outcomes& o) {
+    if (!taut_all_along(o[0])) return std::vector<Difference>{};
+    auto a = under_one_name(o[0], g), b = under_one_name(o[1], g);
+    for (auto* side : {&a, &b}) side->numbers.erase("mass");
+    return compare(a, b, usual_tolerance);
+  };
+  return trial;
 }
 
 /// Frames whose deformation is small: beams of one element are exact under loads at nodes.
@@ -229,7 +266,8 @@ Json slightly_loaded_frame(Random& random) {
   while (tapered) {
     deck = frame(random);
     tapered = false;
-    for (const auto& item : deck["sections"].items()) tapered = tapered || item.value()["kind"] == "tapered_tube";
+    for (const auto& item : deck["sections"].items())
+      tapered = tapered || item.value()["kind"] == "tapered_tube";
   }
   for (auto& load : deck["loads"])
     for (const char* key : {"force", "moment", "displacement", "rotation", "line_force"})
@@ -240,22 +278,21 @@ Json slightly_loaded_frame(Random& random) {
   return deck;
 }
 
-/// In linear theory cubic beams are exact at their nodes; what is left is of the second order in the rotations, which are
-/// some 1e-6, over the softness of the frame.
+/// In linear theory cubic beams are exact at their nodes; what is left is of the second order in the
+/// rotations, which are some 1e-6, over the softness of the frame.
 std::optional<Trial> divided_beams(const Json& deck, Random& random) {
   if (deck["loads"].empty()) return std::nullopt;
   Json divided = deck;
-  divided["steps"].insert(divided["steps"].begin(), {{"kind", "mesh"}, {"subdivisions", random.whole(2, 5)}});
+  const Json mesh{{"kind", "mesh"}, {"subdivisions", random.whole(2, 5)}};
+  divided["steps"].insert(divided["steps"].begin(), mesh);
   Trial trial;
   trial.jobs = {{deck}, {divided}};
-  trial.judge = [](const Outcomes& o) {
-    return compare(o[0].only("node "), o[1].only("node "), 1e-4);
-  };
+  trial.judge = [](const Outcomes& o) { return compare(o[0].only("node "), o[1].only("node "), 1e-4); };
   return trial;
 }
 
-/// A rectangle of membrane or shell, pulled at its straight edges so that it is in one state of stress all over. Every
-/// division into facets carries that exactly.
+/// A rectangle of membrane or shell, pulled at its straight edges so that it is in one state of stress all
+/// over. Every division into facets carries that exactly.
 Json stretched_patch(Random& random) {
   Builder b;
   const double cell = random.magnitude(0.3, 5), stiffness = random.magnitude(1e4, 1e6);
@@ -268,17 +305,22 @@ Json stretched_patch(Random& random) {
     }
   const auto at = [&](int i, int j) { return names[static_cast<std::size_t>(i * (m + 1) + j)]; };
   if (random.chance(0.3)) {
-    b.deck["materials"]["film"] = {{"young_modulus", stiffness / (0.01 * cell)}, {"poisson_ratio", 0.3}, {"density", 1000.0}};
+    b.deck["materials"]["film"] = {
+        {"young_modulus", stiffness / (0.01 * cell)}, {"poisson_ratio", 0.3}, {"density", 1000.0}};
     b.section("cloth", {{"kind", "shell"}, {"material", "film"}, {"thickness", 0.01 * cell}});
   } else {
-    b.section("cloth", {{"kind", "membrane"}, {"tension_stiffness", stiffness}, {"poisson_ratio", random.between(0, 0.45)}, {"mass_per_area", 0.1}});
+    b.section("cloth", {{"kind", "membrane"},
+                        {"tension_stiffness", stiffness},
+                        {"poisson_ratio", random.between(0, 0.45)},
+                        {"mass_per_area", 0.1}});
   }
   const double prestress = stiffness * random.between(0.001, 0.01);
   b.group("cloth", {{"prestress", prestress}});
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < m; ++j) b.element("cloth", {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
   const double px = prestress * random.between(0.5, 2), py = prestress * random.between(0.5, 2);
-  const auto pull = [&](const std::string& name, const Vec3& force, int count, const std::function<std::string(int)>& node) {
+  const auto pull = [&](const std::string& name, const Vec3& force, int count,
+                        const std::function<std::string(int)>& node) {
     Json edges = Json::array();
     for (int k = 0; k < count; ++k) edges.push_back(Json::array({node(k), node(k + 1)}));
     b.deck["groups"][name] = {{"edges", edges}};
@@ -314,9 +356,11 @@ Json as_triangles(const Json& deck, Random& random) {
 
 std::optional<Trial> other_facets(const Json& deck, Random& random) {
   Json other = deck;
-  if (!deck["model"]["elements"].contains("cloth") || deck["model"]["elements"]["cloth"][0].size() != 4) return std::nullopt;
+  if (!deck["model"]["elements"].contains("cloth") || deck["model"]["elements"]["cloth"][0].size() != 4)
+    return std::nullopt;
+  const Json mesh{{"kind", "mesh"}, {"subdivisions", random.whole(2, 3)}};
   if (random.chance(0.5))
-    other["steps"].insert(other["steps"].begin(), {{"kind", "mesh"}, {"subdivisions", random.whole(2, 3)}});
+    other["steps"].insert(other["steps"].begin(), mesh);
   else
     other = as_triangles(deck, random);
   Trial trial;
@@ -344,7 +388,8 @@ std::optional<Trial> split_groups(const Json& deck, Random& random) {
   const std::string group = random.one_of(can), second = group + "2";
   Json other = deck;
   Json here = Json::array(), there = Json::array();
-  for (const auto& element : deck["model"]["elements"][group]) (random.chance(0.5) ? here : there).push_back(element);
+  for (const auto& element : deck["model"]["elements"][group])
+    (random.chance(0.5) ? here : there).push_back(element);
   if (here.empty() || there.empty()) return std::nullopt;
   other["model"]["elements"][group] = here;
   other["model"]["elements"][second] = there;
@@ -362,7 +407,8 @@ std::optional<Trial> split_groups(const Json& deck, Random& random) {
     auto a = o[0], b = o[1];
     for (auto* side : {&a, &b})
       std::erase_if(side->numbers, [](const auto& item) {
-        return item.first.find(" group ") != std::string::npos || (item.first.rfind("node ", 0) != 0 && item.first.rfind("step ", 0) != 0);
+        return item.first.find(" group ") != std::string::npos ||
+               (item.first.rfind("node ", 0) != 0 && item.first.rfind("step ", 0) != 0);
       });
     return compare(a, b, usual_tolerance);
   };
@@ -374,15 +420,23 @@ std::optional<Trial> split_groups(const Json& deck, Random& random) {
 std::vector<Relation> relations_of_elements() {
   const std::string exact = "1e-6 of the largest: only rounding differs";
   return {
-      {"initial_state", "tension, prestrain, force_density and unstressed_length of cables say the same.", exact, drawn_net, initial_state},
-      {"heat_and_prestrain", "A cable heated by dT is one of prestrain (1 + e)/(1 + alpha dT) - 1.", exact, drawn_net, heat_and_prestrain},
-      {"bar_for_cable", "Cables in tension are bars.", exact, [](Random& r) { return r.chance(0.7) ? cable_net(r) : mast(r); }, bar_for_cable},
-      {"light_catenary", "A cable is a catenary without weight.", "1e-6 of the largest; w L / T is below 1e-6", drawn_net, light_catenary},
+      {"initial_state", "tension, prestrain, force_density and unstressed_length of cables say the same.",
+       exact, drawn_net, initial_state},
+      {"heat_and_prestrain", "A cable heated by dT is one of prestrain (1 + e)/(1 + alpha dT) - 1.", exact,
+       drawn_net, heat_and_prestrain},
+      {"bar_for_cable", "Cables in tension are bars.", exact,
+       [](Random& r) { return r.chance(0.7) ? cable_net(r) : mast(r); }, bar_for_cable},
+      {"light_catenary", "A cable is a catenary without weight.",
+       "1e-6 of the largest; w L / T is below 1e-6", drawn_net, light_catenary},
       {"divided_beams", "Beams of one element or several, under small loads: the same motions of nodes.",
-       "1e-4 of the largest: rotations of 1e-5 times the softness of the frame", slightly_loaded_frame, divided_beams},
-      {"other_facets", "A flat membrane or shell in one state of stress, of quadrilaterals or triangles: one strain, one stress.", exact,
-       stretched_patch, other_facets},
-      {"split_groups", "One group of elements told as two: nothing changes.", exact, any_structure, split_groups},
+       "1e-4 of the largest: rotations of 1e-5 times the softness of the frame", slightly_loaded_frame,
+       divided_beams},
+      {"other_facets",
+       "A flat membrane or shell in one state of stress, of quadrilaterals or triangles: one strain, one "
+       "stress.",
+       exact, stretched_patch, other_facets},
+      {"split_groups", "One group of elements told as two: nothing changes.", exact, any_structure,
+       split_groups},
   };
 }
 

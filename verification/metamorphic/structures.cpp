@@ -37,12 +37,14 @@ Json equilibrium(const std::string& name, const NodeNames& loads) {
 /// A rectangular net of places with a random outline: nodes by row and column, of which the rim is marked.
 class Grid {
  public:
-  Grid(Builder& builder, Random& random, int n, int m, double cell, const std::function<double(double, double)>& height)
+  Grid(Builder& builder, Random& random, int n, int m, double cell,
+       const std::function<double(double, double)>& height)
       : n_(n), m_(m) {
     const double shake = 0.15 * cell, width = random.between(0.8, 1.3) * cell;
     for (int i = 0; i <= n; ++i)
       for (int j = 0; j <= m; ++j) {
-        const double x = i * cell + random.between(-shake, shake), y = j * width + random.between(-shake, shake);
+        const double x = i * cell + random.between(-shake, shake),
+                     y = j * width + random.between(-shake, shake);
         names_.push_back(builder.node({x, y, height(x / (n * cell) - 0.5, y / (m * width) - 0.5)}));
       }
   }
@@ -85,34 +87,54 @@ class Grid {
 };
 
 std::function<double(double, double)> saddle(Random& random, double rise) {
-  const double a = random.between(-1, 1) * rise, b = random.between(-1, 1) * rise, c = random.between(-1, 1) * rise;
+  const double a = random.between(-1, 1) * rise, b = random.between(-1, 1) * rise,
+               c = random.between(-1, 1) * rise;
   return [=](double x, double y) { return a * x * y * 4 + b * x * x - c * y * y; };
 }
 
 /// Initial state of cables of one tension, said in one of the ways there are.
 Json state(Random& random, double tension, double stiffness, double length) {
   switch (random.whole(0, 3)) {
-    case 0: return {{"tension", tension}};
-    case 1: return {{"prestrain", tension / stiffness}};
-    case 2: return {{"force_density", tension / length}};
-    default: return {{"tension", tension * random.between(0.8, 1.2)}};
+    case 0:
+      return {{"tension", tension}};
+    case 1:
+      return {{"prestrain", tension / stiffness}};
+    case 2:
+      return {{"force_density", tension / length}};
+    default:
+      return {{"tension", tension * random.between(0.8, 1.2)}};
   }
 }
 
 /// A beam section of about the height given, of a random kind.
 Json beam_section(Random& random, double h) {
   switch (random.whole(0, 6)) {
-    case 0: return {{"kind", "rectangle"}, {"material", "metal"}, {"width", h * random.between(0.4, 1)}, {"height", h}};
-    case 1: return {{"kind", "round"}, {"material", "metal"}, {"diameter", h}};
-    case 2: return {{"kind", "tube"}, {"material", "metal"}, {"diameter", h}, {"thickness", h * random.between(0.03, 0.2)}};
+    case 0:
+      return {
+          {"kind", "rectangle"}, {"material", "metal"}, {"width", h * random.between(0.4, 1)}, {"height", h}};
+    case 1:
+      return {{"kind", "round"}, {"material", "metal"}, {"diameter", h}};
+    case 2:
+      return {{"kind", "tube"},
+              {"material", "metal"},
+              {"diameter", h},
+              {"thickness", h * random.between(0.03, 0.2)}};
     case 3:
-      return {{"kind", "square_tube"}, {"material", "metal"}, {"side", h}, {"thickness", h * random.between(0.03, 0.1)}};
+      return {{"kind", "square_tube"},
+              {"material", "metal"},
+              {"side", h},
+              {"thickness", h * random.between(0.03, 0.1)}};
     case 4:
-      return {{"kind", "i"},           {"material", "metal"}, {"height", h}, {"width", h * random.between(0.5, 1)},
-              {"web_thickness", h / 20}, {"flange_thickness", h / 12}};
+      return {{"kind", "i"},
+              {"material", "metal"},
+              {"height", h},
+              {"width", h * random.between(0.5, 1)},
+              {"web_thickness", h / 20},
+              {"flange_thickness", h / 12}};
     case 5:
-      return {{"kind", "tapered_tube"},         {"material", "metal"},          {"diameter_start", h},
-              {"diameter_end", h * random.between(0.6, 1)}, {"thickness_start", h / 10}, {"thickness_end", h / 12}};
+      return {{"kind", "tapered_tube"},    {"material", "metal"},
+              {"diameter_start", h},       {"diameter_end", h * random.between(0.6, 1)},
+              {"thickness_start", h / 10}, {"thickness_end", h / 12}};
     default: {
       const double e = 2e11, area = h * h / 3, inertia = area * h * h / 10;
       return {{"kind", "beam"},
@@ -170,21 +192,27 @@ Json cable_net(Random& random) {
   b.load("snow", {{"on", {random.chance(0.5) ? "warp" : "weft"}},
                   {"line_force", to_json(0.1 * tension / cell * random.direction())}});
   b.load("heat", {{"on", {"warp"}}, {"temperature_change", random.between(-40, 40)}});
-  b.load("gradient", {{"on", {"weft"}},
-                      {"temperature_field", fmt::format("{:.6g} + {:.6g}*x - {:.6g}*y", random.between(-20, 20),
-                                                        random.between(0, 10) / cell, random.between(0, 10) / cell)}});
+  b.load("gradient",
+         {{"on", {"weft"}},
+          {"temperature_field", fmt::format("{:.6g} + {:.6g}*x - {:.6g}*y", random.between(-20, 20),
+                                            random.between(0, 10) / cell, random.between(0, 10) / cell)}});
   b.load("motion", {{"on", {"moving"}}, {"displacement", to_json(0.02 * cell * random.direction())}});
   if (found)
-    b.step({{"kind", "form_finding"}, {"method", random.chance(0.5) ? "tension" : "linear"},
+    b.step({{"kind", "form_finding"},
+            {"method", random.chance(0.5) ? "tension" : "linear"},
+            {"net", {"warp", "weft"}},
             {"initial_force_density", tension / cell}});
   b.step(equilibrium("prestress", {}));
   b.step(equilibrium("loaded", some(load_names(b.deck), random)));
   b.step({{"kind", "modal"}, {"modes", std::min(3, 3 * (n - 1) * (m - 1))}});
   if (!found && random.chance(0.3)) {
-    const Vec3 wanted = place_of(b.deck, b.deck["groups"]["one"]["nodes"][0]) + 0.02 * cell * random.direction();
-    b.step({{"kind", "inverse"}, {"tolerance", 1e-9 * cell},
-            {"targets", Json::array({{{"on", {"one"}}, {"x", wanted[0]}, {"y", wanted[1]}, {"z", wanted[2]}}})},
-            {"unknowns", Json::array({{{"on", {"warp", "weft"}}, {"each", "cable"}}})}});
+    const Vec3 wanted =
+        place_of(b.deck, b.deck["groups"]["one"]["nodes"][0]) + 0.02 * cell * random.direction();
+    b.step(
+        {{"kind", "inverse"},
+         {"tolerance", 1e-9 * cell},
+         {"targets", Json::array({{{"on", {"one"}}, {"x", wanted[0]}, {"y", wanted[1]}, {"z", wanted[2]}}})},
+         {"unknowns", Json::array({{{"on", {"warp", "weft"}}, {"each", "cable"}}})}});
   }
   tidy(b.deck);
   return placed(b.deck, random);
@@ -198,8 +226,11 @@ Json tent(Random& random) {
   const double width = cell * m;
   const Grid grid(b, random, n, m, cell, saddle(random, 0.2 * cell * n));
   const bool orthotropic = random.chance(0.3);
-  Json section{{"kind", "membrane"},  {"tension_stiffness", stiffness}, {"poisson_ratio", random.between(0, 0.4)},
-               {"mass_per_area", prestress / width * 1e-3}, {"thermal_expansion", 1e-5}};
+  Json section{{"kind", "membrane"},
+               {"tension_stiffness", stiffness},
+               {"poisson_ratio", random.between(0, 0.4)},
+               {"mass_per_area", prestress / width * 1e-3},
+               {"thermal_expansion", 1e-5}};
   if (orthotropic) {
     section["tension_stiffness_2"] = stiffness * random.between(0.4, 0.9);
     section["shear_stiffness"] = stiffness * random.between(0.05, 0.3);
@@ -215,7 +246,8 @@ Json tent(Random& random) {
   grid.facets(b, "cloth", random, film ? 1 : random.one_of(std::vector<double>{0, 0.5, 1}));
   b.nodes("corners", grid.corners());
   if (random.chance(0.4)) {
-    b.section("rope", {{"kind", "cable"}, {"axial_stiffness", 100 * prestress * width}, {"mass_per_length", 0.1}});
+    b.section("rope",
+              {{"kind", "cable"}, {"axial_stiffness", 100 * prestress * width}, {"mass_per_length", 0.1}});
     b.group("rope", {{"tension", prestress * width * random.between(1.5, 2.5)}});
     for (int i = 0; i < n; ++i)
       for (const int j : {0, m}) b.element("rope", {grid.at(i, j), grid.at(i + 1, j)});
@@ -252,7 +284,8 @@ void build_storey(Builder& b, Random& random, double length, int n, NodeNames& b
     const double angle = 2 * std::numbers::pi * (k + random.between(-0.15, 0.15)) / n;
     const Vec3 out(std::cos(angle), std::sin(angle), 0);
     base.push_back(b.node(radius * out));
-    top.push_back(b.node(radius * random.between(0.7, 1) * out + Vec3(0, 0, length * random.between(0.8, 1.1))));
+    top.push_back(
+        b.node(radius * random.between(0.7, 1) * out + Vec3(0, 0, length * random.between(0.8, 1.1))));
     b.element("columns", {base.back(), top.back()});
   }
   for (int k = 0; k < n; ++k) {
@@ -291,8 +324,9 @@ void add_frame_loads(Builder& b, Random& random, double length, double bending) 
   b.load("twist", {{"on", {"columns"}}, {"line_moment", to_json(0.1 * force * random.direction())}});
   b.load("heat", {{"on", {"columns"}}, {"temperature_change", random.between(-60, 60)}});
   b.load("gradient", {{"on", {"columns"}},
-                      {"temperature_field", fmt::format("{:.6g} + {:.6g}*x + {:.6g}*z", random.between(-10, 10),
-                                                        random.between(-30, 30) / length, random.between(-30, 30) / length)}});
+                      {"temperature_field",
+                       fmt::format("{:.6g} + {:.6g}*x + {:.6g}*z", random.between(-10, 10),
+                                   random.between(-30, 30) / length, random.between(-30, 30) / length)}});
   b.load("settlement", {{"on", {"foot"}}, {"displacement", to_json(0.01 * length * random.direction())}});
   b.load("tilt", {{"on", {"foot"}}, {"rotation", to_json(0.03 * random.direction())}});
 }
@@ -319,7 +353,8 @@ Json frame(Random& random) {
       entry["release_start"] = random.chance(0.5) ? Json("all") : Json({"bending_2"});
       entry["release_end"] = {"bending_2", "bending_3"};
     }
-    if (group == "beams" && random.chance(0.3)) entry["offset_end"] = to_json(0.5 * height * random.direction());
+    if (group == "beams" && random.chance(0.3))
+      entry["offset_end"] = to_json(0.5 * height * random.direction());
     b.group(group, entry);
   }
   b.nodes("base", base);
@@ -327,8 +362,7 @@ Json frame(Random& random) {
   b.nodes("top", top);
   b.nodes("one", {top.back()});
   b.support("base", "all");
-  if (!tree && random.chance(0.3))
-    b.support("one", {"x"}, {{"x_axis", to_json(random.direction())}});
+  if (!tree && random.chance(0.3)) b.support("one", {"x"}, {{"x_axis", to_json(random.direction())}});
   const double bending = 2e11 * std::pow(height, 4) / 60;
   add_frame_loads(b, random, length, bending);
   auto loads = some(load_names(b.deck), random);
@@ -354,7 +388,8 @@ Json shell(Random& random) {
   const double cell = random.magnitude(0.2, 3);
   const int n = random.whole(1, 3), m = random.whole(2, 4);
   const double length = n * cell, thickness = length / random.between(15, 50), rise = 0.15 * length;
-  const Grid grid(b, random, n, m, cell, random.chance(0.4) ? [](double, double) { return 0.0; } : saddle(random, rise));
+  const Grid grid(b, random, n, m, cell,
+                  random.chance(0.4) ? [](double, double) { return 0.0; } : saddle(random, rise));
   b.section("plate", {{"kind", "shell"}, {"material", "metal"}, {"thickness", thickness}});
   b.group("plate");
   grid.facets(b, "plate", random, random.one_of(std::vector<double>{0, 0.3, 1}));
@@ -373,7 +408,8 @@ Json shell(Random& random) {
   const double force = modulus * std::pow(thickness, 3) / 12 / length * random.magnitude(0.02, 0.3);
   b.load("weight", {{"acceleration", to_json(Vec3(0, 0, -9.81))}});
   b.load("pressure", {{"on", {"plate"}}, {"pressure", force / (length * length)}});
-  b.load("snow", {{"on", {"plate"}}, {"surface_force", to_json(force / (length * length) * random.direction())}});
+  b.load("snow",
+         {{"on", {"plate"}}, {"surface_force", to_json(force / (length * length) * random.direction())}});
   b.load("edge", {{"on", {"rim"}}, {"line_force", to_json(force / length * random.direction())}});
   b.load("edge_moment", {{"on", {"rim"}}, {"line_moment", to_json(0.1 * force * random.direction())}});
   b.load("push", {{"on", {"one"}}, {"force", to_json(0.3 * force * random.direction())}});
@@ -401,8 +437,10 @@ Mast build_mast(Builder& b, Random& random, double height) {
   b.element("stem", {mast.middle, mast.top});
   const int n = random.whole(3, 4);
   for (int k = 0; k < n; ++k) {
-    const double angle = 2 * std::numbers::pi * (k + random.between(-0.2, 0.2)) / n, r = height * random.between(0.5, 0.9);
-    mast.anchors.push_back(b.node({r * std::cos(angle), r * std::sin(angle), height * random.between(-0.05, 0.05)}));
+    const double angle = 2 * std::numbers::pi * (k + random.between(-0.2, 0.2)) / n,
+                 r = height * random.between(0.5, 0.9);
+    mast.anchors.push_back(
+        b.node({r * std::cos(angle), r * std::sin(angle), height * random.between(-0.05, 0.05)}));
     b.element("guys", {mast.top, mast.anchors.back()});
     if (random.chance(0.5)) b.element("guys", {mast.middle, mast.anchors.back()});
   }
@@ -420,10 +458,16 @@ Json mast(Random& random) {
   b.group("stem", {{"orientation", to_json(Vec3(1, random.between(-1, 1), 0))}});
   const double bending = 2e11 * std::pow(side, 4) / 60, critical = 9.87 * bending / (height * height);
   const double tension = 0.05 * critical;
-  b.section("guys", {{"kind", "cable"}, {"axial_stiffness", 500 * tension}, {"mass_per_length", 1e-3 * tension / height}, {"thermal_expansion", 1e-5}});
+  b.section("guys", {{"kind", "cable"},
+                     {"axial_stiffness", 500 * tension},
+                     {"mass_per_length", 1e-3 * tension / height},
+                     {"thermal_expansion", 1e-5}});
   b.group("guys", {{"tension", tension}});
   if (random.chance(0.5)) {  // a sail between the top and two anchors
-    b.section("sail", {{"kind", "membrane"}, {"tension_stiffness", 100 * tension / height}, {"poisson_ratio", 0.3}, {"mass_per_area", 1e-3 * tension / (height * height)}});
+    b.section("sail", {{"kind", "membrane"},
+                       {"tension_stiffness", 100 * tension / height},
+                       {"poisson_ratio", 0.3},
+                       {"mass_per_area", 1e-3 * tension / (height * height)}});
     b.group("sail", {{"prestress", 0.1 * tension / height}});
     b.element("sail", {mast.anchors[0], mast.anchors[1], mast.top});
     b.load("wind", {{"on", {"sail"}}, {"pressure", 0.02 * tension / (height * height)}});
@@ -470,14 +514,20 @@ Json mast(Random& random) {
 
 Json truss(Random& random) {
   Builder b;
-  const double radius = random.magnitude(0.5, 10), rise = radius * random.between(0.15, 0.6), stiffness = random.magnitude(1e5, 1e8);
-  b.section("bars", {{"kind", "bar"}, {"axial_stiffness", stiffness}, {"mass_per_length", 1.0}, {"thermal_expansion", 1e-5}});
+  const double radius = random.magnitude(0.5, 10), rise = radius * random.between(0.15, 0.6),
+               stiffness = random.magnitude(1e5, 1e8);
+  b.section("bars", {{"kind", "bar"},
+                     {"axial_stiffness", stiffness},
+                     {"mass_per_length", 1.0},
+                     {"thermal_expansion", 1e-5}});
   b.group("bars");
-  const auto apex = b.node({0.05 * radius * random.between(-1, 1), 0.05 * radius * random.between(-1, 1), rise});
+  const auto apex =
+      b.node({0.05 * radius * random.between(-1, 1), 0.05 * radius * random.between(-1, 1), rise});
   const int n = random.whole(3, 6);
   NodeNames ring;
   for (int k = 0; k < n; ++k) {
-    const double angle = 2 * std::numbers::pi * (k + random.between(-0.15, 0.15)) / n, r = radius * random.between(0.85, 1.15);
+    const double angle = 2 * std::numbers::pi * (k + random.between(-0.15, 0.15)) / n,
+                 r = radius * random.between(0.85, 1.15);
     ring.push_back(b.node({r * std::cos(angle), r * std::sin(angle), 0}));
     b.element("bars", {apex, ring.back()});
   }
@@ -485,15 +535,20 @@ Json truss(Random& random) {
   b.nodes("apex", {apex});
   b.support("ring", "pinned");
   const double length = std::hypot(radius, rise), limit = n * stiffness * 0.385 * std::pow(rise / length, 3);
-  b.load("press", {{"on", {"apex"}}, {"force", to_json(limit * (-Vec3::UnitZ() + 0.03 * random.direction()))}});
+  b.load("press",
+         {{"on", {"apex"}}, {"force", to_json(limit * (-Vec3::UnitZ() + 0.03 * random.direction()))}});
   b.load("side", {{"on", {"apex"}}, {"force", to_json(0.02 * limit * random.direction())}});
   b.load("heat", {{"on", {"bars"}}, {"temperature_change", random.between(-20, 20)}});
   if (random.chance(0.5)) b.step(equilibrium("working", {random.chance(0.5) ? "heat" : "side"}));
   if (random.chance(0.5)) {
     b.step({{"kind", "collapse"}, {"loads", {"press"}}, {"monitor", {"apex"}}, {"linear_factor", 1.0}});
   } else {
-    b.step({{"kind", "equilibrium"}, {"name", "path"}, {"loads", {"press"}}, {"control", "arc_length"},
-            {"until", {{"load_factor", 0.5}}}, {"monitor", {"apex"}}});
+    b.step({{"kind", "equilibrium"},
+            {"name", "path"},
+            {"loads", {"press"}},
+            {"control", "arc_length"},
+            {"until", {{"load_factor", 0.5}}},
+            {"monitor", {"apex"}}});
     b.step({{"kind", "modal"}, {"modes", 3}});
   }
   tidy(b.deck);
@@ -506,18 +561,26 @@ Json reflector(Random& random) {
   Builder b;
   b.deck.erase("model");
   const int rings = random.whole(2, 3);
-  Json dish{{"kind", "perimeter-truss"}, {"aperture", aperture}, {"focal_length", focus}, {"rings", rings},
-            {"gap", 0.02 * aperture}, {"struts", random.one_of(std::vector<int>{3, 6, 6 * rings})}};
+  Json dish{{"kind", "perimeter-truss"}, {"aperture", aperture},
+            {"focal_length", focus},     {"rings", rings},
+            {"gap", 0.02 * aperture},    {"struts", random.one_of(std::vector<int>{3, 6, 6 * rings})}};
   if (random.chance(0.5)) dish["clearance"] = aperture * random.between(0.05, 0.2);
   b.deck["reflector"] = dish;
   b.deck["materials"]["carbon"] = {{"young_modulus", 2e11}, {"poisson_ratio", 0.3}, {"density", 1600.0}};
-  b.section("rim", {{"kind", "rectangle"}, {"material", "carbon"}, {"width", height}, {"height", 2 * height}});
+  b.section("rim",
+            {{"kind", "rectangle"}, {"material", "carbon"}, {"width", height}, {"height", 2 * height}});
   b.section("strut", {{"kind", "round"}, {"material", "carbon"}, {"diameter", height}});
   b.section("cord", {{"kind", "cable"}, {"axial_stiffness", 3e4}, {"mass_per_length", 0.0}});
-  b.section("mesh", {{"kind", "membrane"}, {"tension_stiffness", 130.0}, {"poisson_ratio", 0.3}, {"mass_per_area", 0.01}});
-  b.deck["groups"] = {{"front_net", {{"section", "cord"}, {"tension", net}}}, {"rear_net", {{"section", "cord"}, {"tension", net}}},
-                      {"ties", {{"section", "cord"}}}, {"diagonals", {{"section", "cord"}, {"tension", 3 * net}}},
-                      {"front_rim", {{"section", "rim"}}}, {"rear_rim", {{"section", "rim"}}}, {"struts", {{"section", "strut"}}},
+  b.section(
+      "mesh",
+      {{"kind", "membrane"}, {"tension_stiffness", 130.0}, {"poisson_ratio", 0.3}, {"mass_per_area", 0.01}});
+  b.deck["groups"] = {{"front_net", {{"section", "cord"}, {"tension", net}}},
+                      {"rear_net", {{"section", "cord"}, {"tension", net}}},
+                      {"ties", {{"section", "cord"}}},
+                      {"diagonals", {{"section", "cord"}, {"tension", 3 * net}}},
+                      {"front_rim", {{"section", "rim"}}},
+                      {"rear_rim", {{"section", "rim"}}},
+                      {"struts", {{"section", "strut"}}},
                       {"cloth", {{"section", "mesh"}, {"prestress", 2.0}}}};
   b.support("held_strut", "all");
   b.step({{"kind", "form_finding"}, {"initial_force_density", 10 * net / aperture}});

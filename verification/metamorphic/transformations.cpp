@@ -15,9 +15,8 @@ namespace {
 using Names = std::set<std::string>;
 
 const Names points{"centre"};
-const Names polar{"force",       "displacement", "line_force",   "surface_force", "acceleration",
-                  "orientation", "x_axis",       "y_axis",       "offset_start",  "offset_end",
-                  "direction"};
+const Names polar{"force",  "displacement", "line_force",   "surface_force", "acceleration", "orientation",
+                  "x_axis", "y_axis",       "offset_start", "offset_end",    "direction"};
 const Names axial{"moment", "rotation", "line_moment", "axis"};
 
 bool is_vector(const Json& value) {
@@ -78,7 +77,9 @@ void write_axes(Json& support) {
 void move_targets(Json& step, const Motion& motion) {
   if (!step.contains("targets")) return;
   for (auto& target : step["targets"]) {
-    const Vec3 x = motion.turn * Vec3(target["x"].get<double>(), target["y"].get<double>(), target["z"].get<double>()) + motion.shift;
+    const Vec3 x =
+        motion.turn * Vec3(target["x"].get<double>(), target["y"].get<double>(), target["z"].get<double>()) +
+        motion.shift;
     target["x"] = x[0];
     target["y"] = x[1];
     target["z"] = x[2];
@@ -95,23 +96,79 @@ void reverse_facets(Json& deck) {
 }
 
 /// Units of keys; the same word means the same everywhere but where `in_units` says otherwise.
-const std::map<std::string, std::string> units_of_keys{
-    {"young_modulus", "N/m^2"}, {"density", "kg/m^3"}, {"diameter", "m"}, {"area", "m^2"}, {"axial_stiffness", "N"},
-    {"mass_per_length", "kg/m"}, {"width", "m"}, {"height", "m"}, {"thickness", "m"}, {"side", "m"},
-    {"diameter_start", "m"}, {"diameter_end", "m"}, {"thickness_start", "m"}, {"thickness_end", "m"},
-    {"web_thickness", "m"}, {"flange_thickness", "m"}, {"inertia_2", "m^4"}, {"inertia_3", "m^4"}, {"torsion", "m^4"},
-    {"bending_stiffness_2", "N m^2"}, {"bending_stiffness_3", "N m^2"}, {"torsion_stiffness", "N m^2"},
-    {"shear_stiffness_2", "N"}, {"shear_stiffness_3", "N"}, {"rotary_inertia_2", "kg m"}, {"rotary_inertia_3", "kg m"},
-    {"tension_stiffness", "N/m"}, {"tension_stiffness_2", "N/m"}, {"mass_per_area", "kg/m^2"},
-    {"shear_stiffness", "N/m"}, {"stiffness", "N/m"}, {"rotational_stiffness", "N m"}, {"mass", "kg"},
-    {"inertia", "kg m^2"}, {"tension", "N"}, {"unstressed_length", "m"}, {"force_density", "N/m"}, {"prestress", "N/m"},
-    {"initial_stress", "N/m^2"}, {"offset_start", "m"}, {"offset_end", "m"}, {"force", "N"}, {"moment", "N m"},
-    {"displacement", "m"}, {"line_force", "N/m"}, {"line_moment", "N"}, {"surface_force", "N/m^2"},
-    {"pressure", "N/m^2"}, {"acceleration", "m/s^2"}, {"centre", "m"}, {"amplitude", "m"},
-    {"initial_force_density", "N/m"}, {"aperture", "m"}, {"focal_length", "m"}, {"clearance", "m"}, {"gap", "m"},
-    {"rim_height", "m"}, {"evaluation_radius", "m"}, {"hub_radius", "m"}, {"joint_radius", "m"}, {"apex_radius", "m"},
-    {"fork_length", "m"}, {"tip_radius", "m"}, {"surface_height", "m"}, {"tension_min", "N"}, {"tension_max", "N"},
-    {"max_change", "m"}, {"x", "m"}, {"y", "m"}, {"z", "m"}, {"radius", "m"}, {"min", "m"}, {"max", "m"}};
+const std::map<std::string, std::string> units_of_keys{{"young_modulus", "N/m^2"},
+                                                       {"density", "kg/m^3"},
+                                                       {"diameter", "m"},
+                                                       {"area", "m^2"},
+                                                       {"axial_stiffness", "N"},
+                                                       {"mass_per_length", "kg/m"},
+                                                       {"width", "m"},
+                                                       {"height", "m"},
+                                                       {"thickness", "m"},
+                                                       {"side", "m"},
+                                                       {"diameter_start", "m"},
+                                                       {"diameter_end", "m"},
+                                                       {"thickness_start", "m"},
+                                                       {"thickness_end", "m"},
+                                                       {"web_thickness", "m"},
+                                                       {"flange_thickness", "m"},
+                                                       {"inertia_2", "m^4"},
+                                                       {"inertia_3", "m^4"},
+                                                       {"torsion", "m^4"},
+                                                       {"bending_stiffness_2", "N m^2"},
+                                                       {"bending_stiffness_3", "N m^2"},
+                                                       {"torsion_stiffness", "N m^2"},
+                                                       {"shear_stiffness_2", "N"},
+                                                       {"shear_stiffness_3", "N"},
+                                                       {"rotary_inertia_2", "kg m"},
+                                                       {"rotary_inertia_3", "kg m"},
+                                                       {"tension_stiffness", "N/m"},
+                                                       {"tension_stiffness_2", "N/m"},
+                                                       {"mass_per_area", "kg/m^2"},
+                                                       {"shear_stiffness", "N/m"},
+                                                       {"stiffness", "N/m"},
+                                                       {"rotational_stiffness", "N m"},
+                                                       {"mass", "kg"},
+                                                       {"inertia", "kg m^2"},
+                                                       {"tension", "N"},
+                                                       {"unstressed_length", "m"},
+                                                       {"force_density", "N/m"},
+                                                       {"prestress", "N/m"},
+                                                       {"initial_stress", "N/m^2"},
+                                                       {"offset_start", "m"},
+                                                       {"offset_end", "m"},
+                                                       {"force", "N"},
+                                                       {"moment", "N m"},
+                                                       {"displacement", "m"},
+                                                       {"line_force", "N/m"},
+                                                       {"line_moment", "N"},
+                                                       {"surface_force", "N/m^2"},
+                                                       {"pressure", "N/m^2"},
+                                                       {"acceleration", "m/s^2"},
+                                                       {"centre", "m"},
+                                                       {"amplitude", "m"},
+                                                       {"initial_force_density", "N/m"},
+                                                       {"aperture", "m"},
+                                                       {"focal_length", "m"},
+                                                       {"clearance", "m"},
+                                                       {"gap", "m"},
+                                                       {"rim_height", "m"},
+                                                       {"evaluation_radius", "m"},
+                                                       {"hub_radius", "m"},
+                                                       {"joint_radius", "m"},
+                                                       {"apex_radius", "m"},
+                                                       {"fork_length", "m"},
+                                                       {"tip_radius", "m"},
+                                                       {"surface_height", "m"},
+                                                       {"tension_min", "N"},
+                                                       {"tension_max", "N"},
+                                                       {"max_change", "m"},
+                                                       {"x", "m"},
+                                                       {"y", "m"},
+                                                       {"z", "m"},
+                                                       {"radius", "m"},
+                                                       {"min", "m"},
+                                                       {"max", "m"}};
 
 void scale(Json& value, double factor) {
   if (value.is_number()) {
@@ -138,7 +195,8 @@ Json shuffled_object(const Json& object, Random& random) {
 }
 
 void swap_keys(Json& object, const std::string& a, const std::string& b) {
-  const Json first = object.contains(a) ? object[a] : Json(), second = object.contains(b) ? object[b] : Json();
+  const Json first = object.contains(a) ? object[a] : Json(),
+             second = object.contains(b) ? object[b] : Json();
   object.erase(a);
   object.erase(b);
   if (!second.is_null()) object[a] = second;
@@ -209,11 +267,15 @@ double Units::time() const {
 }
 
 double Units::factor(const std::string& unit) const {
-  static const std::regex part("(/?)(kg|m|N|s|Hz)(?:\\^([0-9]))?");
+  static const std::regex part("(/?)\\b(kg|m|N|s|Hz)\\b(?:\\^([0-9]))?");
   double product = 1;
   for (std::sregex_iterator it(unit.begin(), unit.end(), part), end; it != end; ++it) {
     const std::string base = (*it)[2].str();
-    const double one = base == "m" ? length : base == "N" ? force : base == "kg" ? mass : base == "s" ? time() : 1 / time();
+    const double one = base == "m"    ? length
+                       : base == "N"  ? force
+                       : base == "kg" ? mass
+                       : base == "s"  ? time()
+                                      : 1 / time();
     const int power = (*it)[3].matched ? std::stoi((*it)[3].str()) : 1;
     product *= std::pow(one, (*it)[1].length() > 0 ? -power : power);
   }
@@ -255,7 +317,8 @@ Json shuffled(const Json& deck, Random& random) {
   model["nodes"] = shuffled_object(model["nodes"], random);
   model["elements"] = shuffled_object(model["elements"], random);
   for (auto& item : model["elements"].items()) shuffle(item.value(), random);
-  for (const char* block : {"materials", "sections", "groups"}) result[block] = shuffled_object(result[block], random);
+  for (const char* block : {"materials", "sections", "groups"})
+    result[block] = shuffled_object(result[block], random);
   for (const char* block : {"supports", "loads"}) shuffle(result[block], random);
   for (auto& item : result["groups"].items())
     if (item.value().contains("nodes")) shuffle(item.value()["nodes"], random);
@@ -273,11 +336,14 @@ Json reversed(const Json& deck, Random& random) {
   const Names stay = pressed(deck);
   for (auto& [group, elements] : result["model"]["elements"].items()) {
     const auto kind = kind_of(result, group);
-    const bool facet = kind == "membrane" || kind == "shell", cord = kind == "cable" || kind == "bar" || kind == "catenary";
-    const bool beam = !facet && !cord && kind != "spring" && kind != "mass" && kind != "rigid_link" && kind != "hinge";
+    const bool facet = kind == "membrane" || kind == "shell",
+               cord = kind == "cable" || kind == "bar" || kind == "catenary";
+    const bool beam =
+        !facet && !cord && kind != "spring" && kind != "mass" && kind != "rigid_link" && kind != "hinge";
     const auto& entry = result["groups"][group];
-    const bool ends = beam && (entry.contains("release_start") || entry.contains("release_end") ||
-                               entry.contains("offset_start") || entry.contains("offset_end") || kind == "tapered_tube");
+    const bool ends =
+        beam && (entry.contains("release_start") || entry.contains("release_end") ||
+                 entry.contains("offset_start") || entry.contains("offset_end") || kind == "tapered_tube");
     if (ends) {  // what is said of an end is said of the whole group
       for (auto& element : elements) element = reversed_nodes(element);
       reverse_ends(result, group);
@@ -286,7 +352,8 @@ Json reversed(const Json& deck, Random& random) {
     for (auto& element : elements) {
       if (facet) {
         std::vector<Json> nodes(element.begin(), element.end());
-        std::rotate(nodes.begin(), nodes.begin() + random.whole(0, static_cast<int>(nodes.size()) - 1), nodes.end());
+        std::rotate(nodes.begin(), nodes.begin() + random.whole(0, static_cast<int>(nodes.size()) - 1),
+                    nodes.end());
         element = Json(nodes);
       }
       const bool turnable = cord || beam || (facet && stay.count(group) == 0);

@@ -40,8 +40,8 @@ std::vector<Json> smaller(const Json& deck) {
         add([&, name = group](Json& d) { d["model"]["elements"][name].erase(i); });
   }
   for (const auto& [name, group] : deck["groups"].items())
-    for (const char* key : {"orientation", "offset_start", "offset_end", "release_start", "release_end", "tension",
-                            "prestrain", "force_density", "prestress"})
+    for (const char* key : {"orientation", "offset_start", "offset_end", "release_start", "release_end",
+                            "tension", "prestrain", "force_density", "prestress"})
       if (group.contains(key)) add([&, n = name](Json& d) { d["groups"][n].erase(key); });
   for (std::size_t s = 0; s < deck["steps"].size(); ++s) {
     if (!deck["steps"][s].contains("loads")) continue;
@@ -68,18 +68,27 @@ std::vector<Json> smaller(const Json& deck) {
 Verdict try_relation(const Relation& relation, const Json& deck, std::uint64_t seed, Runner& runner) {
   Random random(seed, relation.name + " again");
   Verdict verdict;
-  auto trial = relation.derive(deck, random);
+  std::optional<Trial> trial;
+  try {
+    trial = relation.derive(deck, random);
+  } catch (const Json::exception&) {  // a deck made smaller may lack what the relation needs
+  }
   if (!trial) return verdict;
   verdict.trial = *trial;
   Outcomes outcomes;
   for (const auto& job : trial->jobs) outcomes.push_back(runner.run(job));
-  const auto all_done = [&] { return std::all_of(outcomes.begin(), outcomes.end(), [](const auto& o) { return o.done(); }); };
+  const auto all_done = [&] {
+    return std::all_of(outcomes.begin(), outcomes.end(), [](const auto& o) { return o.done(); });
+  };
   if (trial->then && all_done())
     for (const auto& job : trial->then(outcomes)) {
       verdict.trial.jobs.push_back(job);
       outcomes.push_back(runner.run(job));
     }
-  const bool ours = std::any_of(outcomes.begin(), outcomes.end(), [](const auto& o) { return is_ours(o.end); });
+  verdict.n_done = static_cast<int>(
+      std::count_if(outcomes.begin(), outcomes.end(), [](const auto& o) { return o.done(); }));
+  const bool ours =
+      std::any_of(outcomes.begin(), outcomes.end(), [](const auto& o) { return is_ours(o.end); });
   const bool alike = std::all_of(outcomes.begin(), outcomes.end(),
                                  [&](const auto& o) { return o.end == outcomes.front().end; });
   if (!all_done()) verdict.ends = told(outcomes);
@@ -97,12 +106,13 @@ Verdict try_relation(const Relation& relation, const Json& deck, std::uint64_t s
 Json smallest(const Relation& relation, Json deck, std::uint64_t seed, Runner& runner, double seconds) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  const auto kind = try_relation(relation, deck, seed, runner).kind;
+  const auto first = try_relation(relation, deck, seed, runner);
   for (bool shrunk = true; shrunk;) {
     shrunk = false;
     for (auto& candidate : smaller(deck)) {
       if (Clock::now() > end) return deck;
-      if (try_relation(relation, candidate, seed, runner).kind != kind) continue;
+      const auto verdict = try_relation(relation, candidate, seed, runner);
+      if (verdict.kind != first.kind || verdict.n_done != first.n_done) continue;
       deck = std::move(candidate);
       shrunk = true;
       break;

@@ -16,6 +16,7 @@ struct Verdict {
   } kind = Kind::void_;
   std::vector<Difference> differences;  ///< the largest first
   std::string ends;                     ///< how jobs ended, where not all were done
+  int n_done = 0;                       ///< jobs that came to their end
   Trial trial;
   bool fails() const { return kind == Kind::ends_differ || kind == Kind::numbers_differ; }
   double worst() const { return differences.empty() ? 0 : differences.front().measure; }
