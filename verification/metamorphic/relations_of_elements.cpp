@@ -394,6 +394,10 @@ std::optional<Trial> split_groups(const Json& deck, Random& random) {
   other["model"]["elements"][group] = here;
   other["model"]["elements"][second] = there;
   other["groups"][second] = deck["groups"][group];
+  for (auto& step : other["steps"]) {
+    if (step.contains("net")) step["net"].push_back(second);
+    if (step.contains("unknowns")) step["unknowns"][0]["on"].push_back(second);
+  }
   for (const char* block : {"loads", "supports"})
     for (auto& item : other[block])
       if (item.contains("on")) {
