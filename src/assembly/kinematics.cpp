@@ -65,7 +65,8 @@ class ConstraintSolver {
   void resolve(std::size_t index) {
     const auto& constraint = model_.constraints[index];
     if (mark_[index] == Mark::begun)
-      refuse(constraint, constrained[index].node, "follows itself, through this constraint or a ring of them");
+      refuse(constraint, constrained[index].node,
+             "follows itself, through this constraint or a ring of them");
     if (mark_[index] == Mark::done) return;
     mark_[index] = Mark::begun;
     const double first = constraint.terms.front().coefficient;

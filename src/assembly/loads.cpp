@@ -85,8 +85,9 @@ double mean_over(const std::function<double(const Vec3&)>& field, const Model& m
   return (field(a) + 4 * field((a + b) / 2) + field(b)) / 6;
 }
 
-/// Mean of a field over a facet, exact up to the second power of the place on a plane one: of the middles of a
-/// triangle's sides; of the points of Gauss's rule of a quadrilateral, each with the area that it stands for.
+/// Mean of a field over a facet, exact up to the second power of the place on a plane one: of the middles of
+/// a triangle's sides; of the points of Gauss's rule of a quadrilateral, each with the area that it stands
+/// for.
 double mean_over(const std::function<double(const Vec3&)>& field, const Model& model,
                  const FacetNodes& nodes) {
   const auto x = [&](std::size_t i) -> const Vec3& { return model.nodes[nodes[static_cast<int>(i)]]; };
@@ -121,8 +122,8 @@ void add_temperature(const Model& model, const std::vector<Element>& elements,
     const auto& nodes = elements[static_cast<std::size_t>(i)].nodes;
     const double mean = mean_over(load.temperature_field, model, nodes);
     if (!std::isfinite(mean))
-      throw ModelError(fmt::format("{}: temperature_field has no value within the element at node {}", load.title(),
-                                   *std::begin(nodes) + 1));
+      throw ModelError(fmt::format("{}: temperature_field has no value within the element at node {}",
+                                   load.title(), *std::begin(nodes) + 1));
     change += mean;
   }
 }
@@ -142,10 +143,10 @@ void add_temperatures(const Model& model, const Selection& selected, const Load&
     const auto& [a, b] = model.beams[i].nodes;
     const Vec3 middle = (model.nodes[a] + model.nodes[b]) / 2, gradient = load.temperature_gradient(middle);
     if (!gradient.allFinite())
-      throw ModelError(fmt::format(
-          "{}: temperature_field has no slope at ({:.4g}, {:.4g}, {:.4g}), the middle of a "
-          "beam, which bends with it",
-          load.title(), middle.x(), middle.y(), middle.z()));
+      throw ModelError(
+          fmt::format("{}: temperature_field has no slope at ({:.4g}, {:.4g}, {:.4g}), the middle of a "
+                      "beam, which bends with it",
+                      load.title(), middle.x(), middle.y(), middle.z()));
     to.temperature_gradient[static_cast<std::size_t>(i)] += gradient;
   }
 }

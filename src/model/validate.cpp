@@ -23,9 +23,7 @@ class Faults {
     faults_.push_back(fmt::format(text, std::forward<Args>(args)...));
   }
 
-  void add(std::vector<std::string> more) {
-    faults_.insert(faults_.end(), more.begin(), more.end());
-  }
+  void add(std::vector<std::string> more) { faults_.insert(faults_.end(), more.begin(), more.end()); }
 
   std::string element(const char* kind, std::size_t index, int group) const {
     return fmt::format("{} {} of group \"{}\"", kind, index + 1, model_.groups[group].name);
@@ -127,8 +125,9 @@ void check_held_rotations(const Model& model, Faults& faults) {
     if (!moves || !(fixed[3] || fixed[4] || fixed[5])) continue;
     for (const int node : support.nodes)
       if (turns_with[node])
-        faults.add("support \"{}\" holds the rotation of node {}, which turns with another node: support that one",
-                   support.name, node + 1);
+        faults.add(
+            "support \"{}\" holds the rotation of node {}, which turns with another node: support that one",
+            support.name, node + 1);
   }
 }
 

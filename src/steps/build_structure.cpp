@@ -179,9 +179,9 @@ void check_sections(const model::Model& model, const deck::Deck& deck) {
                             [&](const model::Link& link) { return link.group == group; });
     model::for_each_kind(model, [&](const auto& elements) { used = used || in(elements); });
     if (!options.section.empty() && !used)
-      throw ModelError(fmt::format(
-          "{}group \"{}\" has a section but no elements: the structure has none of that name",
-          model::prefix(options.where), name));
+      throw ModelError(
+          fmt::format("{}group \"{}\" has a section but no elements: the structure has none of that name",
+                      model::prefix(options.where), name));
   }
 }
 

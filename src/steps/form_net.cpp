@@ -146,10 +146,11 @@ void check_load(const Context& context, const model::Load& load, const FormNet& 
                      !load.line_moment.isZero(0) || !load.surface_force.isZero(0) || load.pressure != 0 ||
                      load.heats() || !load.acceleration.isZero(0);
   if (other)
-    throw ModelError(fmt::format(
-        "{}: step \"{}\" names it, but form-finding takes no loads but forces on nodes (`force`); leave the others "
-        "to the equilibrium that follows",
-        load.title(), context.step_name));
+    throw ModelError(
+        fmt::format("{}: step \"{}\" names it, but form-finding takes no loads but forces on nodes "
+                    "(`force`); leave the others "
+                    "to the equilibrium that follows",
+                    load.title(), context.step_name));
   for (const int node : load.nodes)
     if (form.local[node] < 0)
       throw ModelError(fmt::format("{}: step \"{}\" names it, but the node at {} is no part of the net",

@@ -81,7 +81,9 @@ class Kinematics {
   /// Links whose follower is `node`, or -1.
   int link_of(int node) const noexcept { return link_of_[static_cast<std::size_t>(node)]; }
   /// Whether a link leaves the rotation of its follower alone.
-  bool rotation_is_free(int link) const { return model_->links[static_cast<std::size_t>(link)].rotation_free; }
+  bool rotation_is_free(int link) const {
+    return model_->links[static_cast<std::size_t>(link)].rotation_free;
+  }
   /// Part of the second derivative that a force and moment on a link's follower add, order (leader's spin,
   /// hinge angles); see the theory page.
   Mat<6> second_derivative(int link, const Vec3& force, const Vec3& moment) const;

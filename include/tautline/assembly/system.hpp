@@ -37,7 +37,7 @@ struct OutOfBalance {
 
 /// What acts on the model at one end of a stage, node by node, facet by facet, group by group.
 struct Acting {
-  Points force, moment;              ///< dead nodal loads, of all kinds together [N], [N m]
+  Points force, moment;  ///< dead nodal loads, of all kinds together [N], [N m]
   Points line;  ///< along each cable (of catenaries, without weight), then beam (in `force` already) [N/m]
   std::vector<double> pressure;      ///< on membranes, then shells [Pa]
   std::vector<double> temperature;   ///< change of cables, then beams, membranes, shells [K]
@@ -229,7 +229,8 @@ class System : public analysis::PathProblem {
   /// structure as drawn, wherever it is now.
   Acting acting(const Boundary& boundary, const std::vector<double>& strains) const;
   void add_element_loads(const model::Load& load, Acting& to) const;
-  /// Compares what each load is by its definition with what acts of it. @throws std::logic_error if they differ
+  /// Compares what each load is by its definition with what acts of it. @throws std::logic_error if they
+  /// differ
   void audit_loads(const Boundary& boundary, const std::vector<double>& strains) const;
   /// The same along the axes of supports, moments about them also where rotations are held in part.
   std::vector<double> nodal_imbalance() const;
