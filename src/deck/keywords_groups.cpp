@@ -124,7 +124,8 @@ Block make_group() {
       .says(
           "Beams: local axis 3 lies in the plane of the beam and this vector; for a beam that is parallel to "
           "it, of the beam and [0, 0, 1], or [1, 0, 0] if it is vertical. Membranes and shells: axis 1 of "
-          "orthotropic material and of unequal prestress is its projection on them.");
+          "orthotropic material and of unequal prestress is its projection on them; without it that of x, or "
+          "of z where they stand across x.");
   b.custom("release_start", Type::releases, release_reader(&Options::release_start))
       .says(
           "Beams: rotations free at the first node: all (a ball joint), or a list of torsion, bending_2, "
