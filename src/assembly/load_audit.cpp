@@ -248,8 +248,7 @@ void add_definition(const Model& model, const std::vector<double>& strains, cons
 void System::audit_loads(const Boundary& boundary, const std::vector<double>& strains) const {
   constexpr double rounding = 1e-10;
   if (boundary.loads.empty()) return;
-  Kinematics drawn(model_, map_);
-  drawn.hold(boundary.supports, {});
+  const Kinematics drawn(model_, map_);  // without supports, at rest
   const auto motions = rigid_motions(model_, size_);
   const auto compare = [&](const Load& load, const char* what, double defined, double found, double size) {
     if (!(std::abs(found - defined) <= rounding * size))
