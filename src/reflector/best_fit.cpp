@@ -8,7 +8,7 @@ namespace tautline::reflector {
 namespace {
 
 constexpr int max_iterations = 200;
-constexpr double orthogonal = 1e-9;  // part of the deviation that the motions could still take away
+constexpr double orthogonal = 1e-7;  // part of the deviation that the motions could still take away
 constexpr double rounding = 1e-14;   // of half the aperture
 constexpr double null_direction =
     1e-9;                        // singular values below this part of the largest slide the surface in itself
@@ -29,8 +29,7 @@ struct Deviation {
   Vec<n_parameters> slope;
 };
 
-Deviation evaluate(const Vec3& point, const Vec3& direction, const Vec3& centre, double curvature,
-                   double lever) {
+Deviation evaluate(const Vec3& point, const Vec3& direction, double curvature, double lever) {
   // point + t direction on the surface: a t^2 + 2 b t + c = 0, the root that stays when it flattens.
   const double a = curvature * direction.head<2>().squaredNorm();
   const double b = curvature * point.head<2>().dot(direction.head<2>()) - direction.z() / 2;
@@ -41,7 +40,7 @@ Deviation evaluate(const Vec3& point, const Vec3& direction, const Vec3& centre,
   const double along = gradient.dot(direction);
   const Vec3 by_point = gradient / along;
   Deviation deviation{-t, {}};
-  deviation.slope << by_point, (foot - centre).cross(by_point) / lever,
+  deviation.slope << by_point, foot.cross(by_point) / lever,
       foot.head<2>().squaredNorm() / (along * lever * lever);
   return deviation;
 }
@@ -94,7 +93,6 @@ class RowReduction {
 /// The sum of squares at a pose and its linearisation there.
 struct Linearised {
   Pose pose;
-  Vec3 centre;        ///< of rotations [m]
   double square = 0;  ///< mean by weight; not a number where a line misses the surface [m^2]
   RowReduction rows;
 };
@@ -107,10 +105,8 @@ class Fit {
         lever_(surface.aperture() / 2) {
     for (const auto& [point, weight] : points) {
       points_.push_back({surface.to_parent(point), weight});
-      middle_ += weight * points_.back().point;
       weights_ += weight;
     }
-    middle_ /= weights_;
   }
 
   double lever() const { return lever_; }
@@ -119,20 +115,16 @@ class Fit {
   Pose start(double curvature) const {
     double mean = 0;
     for (const auto& [point, weight] : points_)
-      mean += weight * evaluate(point, direction_, middle_, curvature, lever_).value / weights_;
+      mean += weight * evaluate(point, direction_, curvature, lever_).value / weights_;
     return {Mat3::Identity(), -mean * direction_, curvature};
   }
 
-  /// Rotations about the centre of curvature over the middle of the surface: a dish is nearly a sphere, which
-  /// they slide in itself, so that the valley of good fits is straight in them.
+  /// Rotations are about the vertex.
   Linearised linearise(const Pose& pose) const {
-    Linearised result{pose, {}, 0, {}};
-    const Vec3 direction = pose.turn * direction_, middle = pose.turn * middle_ + pose.shift;
-    const double radius = 1 / std::max(2 * std::abs(pose.curvature), 0.01 / lever_);
-    result.centre = middle + std::copysign(radius, pose.curvature) * direction;
+    Linearised result{pose, 0, {}};
+    const Vec3 direction = pose.turn * direction_;
     for (const auto& [point, weight] : points_) {
-      const Deviation d =
-          evaluate(pose.turn * point + pose.shift, direction, result.centre, pose.curvature, lever_);
+      const Deviation d = evaluate(pose.turn * point + pose.shift, direction, pose.curvature, lever_);
       if (!std::isfinite(d.value)) {
         result.square = d.value;
         return result;
@@ -148,13 +140,13 @@ class Fit {
   Pose moved(const Linearised& from, const Vec<n_parameters>& change) const {
     const Vec3 rotation = change.segment<3>(3) / lever_;
     const Mat3 turn = Eigen::AngleAxisd(rotation.norm(), rotation.stableNormalized()).toRotationMatrix();
-    return {turn * from.pose.turn, turn * (from.pose.shift - from.centre) + from.centre + change.head<3>(),
+    return {turn * from.pose.turn, turn * from.pose.shift + change.head<3>(),
             from.pose.curvature + change[6] / (lever_ * lever_)};
   }
 
  private:
   std::vector<WeightedPoint> points_;
-  Vec3 direction_, middle_ = Vec3::Zero();
+  Vec3 direction_;
   double lever_, weights_ = 0;
 };
 
@@ -163,7 +155,7 @@ class Fit {
 BestFit fit_paraboloid(const Paraboloid& surface, const std::vector<WeightedPoint>& points) {
   const Fit fit(surface, points);
   Linearised now = fit.linearise(fit.start(1 / (4 * surface.focal_length())));
-  double damping = 1e-3 * now.rows.largest(), growth = 2;
+  double damping = 1e-2 * now.rows.largest(), growth = 2;
   bool converged = false;
   for (int iteration = 0; iteration < max_iterations && std::isfinite(now.square); ++iteration) {
     const double left = now.rows.gain(now.rows.solve());

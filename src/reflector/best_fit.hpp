@@ -15,7 +15,7 @@ struct WeightedPoint {
 struct BestFit {
   double rms = 0;           ///< weighted, along the aperture's normal [m]
   double focal_length = 0;  ///< [m]; infinite for a plane, negative for a surface that bulges
-  bool converged = false;   ///< to where no motion takes away more than 1e-9 of the deviation
+  bool converged = false;   ///< to where no motion takes away more than 1e-7 of the deviation
 };
 
 /// @brief Least squares over six rigid motions and the focal length (Levenberg and Marquardt).

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double small_deformation = 1e-5;  // of the elements, where the tangent is linear in the load
 constexpr int most_rounds = 20;             // until branches and response agree
-constexpr int most_switches = 200;
+constexpr int most_switches = 30;
 
 la::Vector copy_of(const la::Vector& x) {
   la::Vector copy = la::Vector::like(x);
@@ -152,16 +152,17 @@ void BucklingCourse::take_factors_here(const la::SymmetricMatrix& before, const 
   }
 }
 
-void BucklingCourse::find(int count, la::Extreme which) {
+void BucklingCourse::find(int count, la::Extreme which, double limit) {
   for (int switches = 0;; ++switches) {
     const auto tangent = system_.tangent_at(ray());
     const auto change = system_.stress_change(ray());
     const auto next = which == la::Extreme::both ? std::nullopt : next_switch();
     stopped_short_ = next && switches == most_switches;
     if (next && !stopped_short_) {
-      const double step = *next - lambda_;
+      const double step = std::min(*next, limit) - lambda_;
       const auto before = tangent.plus(step / (2 * h_), change);
       if (is_stable(before)) {
+        if (*next > limit) return;
         advance(step);
         const auto now = system_.tangent_at(ray());
         if (!is_stable(now)) return take_factors_here(before, now, count);

@@ -24,7 +24,8 @@ class BucklingCourse {
   bool stresses() const { return stresses_; }
   /// Goes to the piece of the way that has the first factor, and finds up to `count` there. Collective.
   /// @param which lowest: of positive sign; both: also negative ones, of the piece that begins at rest
-  void find(int count, la::Extreme which);
+  /// @param limit factors beyond are of no interest
+  void find(int count, la::Extreme which, double limit);
 
   const std::vector<double>& factors() const { return factors_; }
   la::EigenPairs& pairs() { return pairs_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -109,7 +110,12 @@ void find_along(Context& context, const std::vector<std::string>& loads, int mod
     found.failure = "the loads named stress nothing, so that nothing can buckle under them";
     return;
   }
-  course.find(modes, which);
+  std::vector<double> known;  // on the other side
+  for (const double factor : found.factors) known.push_back(std::abs(factor));
+  std::sort(known.begin(), known.end());
+  const auto enough = static_cast<std::size_t>(modes);
+  course.find(modes, which,
+              known.size() >= enough ? known[enough - 1] : std::numeric_limits<double>::infinity());
   doubt_slack(course, sense, found);
   doubt_strain(system, course, sense, found);
   auto& slack = found.slack[sense > 0 ? "positive" : "negative"];
