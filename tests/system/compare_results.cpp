@@ -213,7 +213,7 @@ class Comparison {
   /// Out-of-balance and increment by iteration: each follows from the one before, of which the solver leaves
   /// some digits; the last one may be needed or not.
   void compare_histories(const Json& a, const Json& b, const std::string& path, const Levels& levels) {
-    constexpr double digits_left = 1e-6, increment_level = 1e-9;
+    constexpr double digits = 1e-3, digits_left = 1e-4, increment_level = 1e-9;
     const std::size_t n = std::min(a.size(), b.size());
     if (std::max(a.size(), b.size()) > n + 1) other(path, a.size(), b.size());
     for (std::size_t i = 0; i < n; ++i)
@@ -221,7 +221,7 @@ class Comparison {
         const double before = i > 0 ? std::max(a[i - 1][k].get<double>(), b[i - 1][k].get<double>()) : 0;
         const double level = k == 0 ? 100 * levels.force : increment_level;
         compare_numbers(a[i][k], b[i][k], fmt::format("{}/{}/{}", path, i, k),
-                        {tolerance_, std::max(level, digits_left * before)});
+                        {digits, std::max(level, digits_left * before)});
       }
   }
 
