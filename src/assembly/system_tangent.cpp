@@ -71,28 +71,17 @@ std::vector<Motion> deformation(const Points& places, const System::NodalField& 
 
 }  // namespace
 
-template <class StateOf>
-void System::assemble_tangent(la::SymmetricMatrix& k, const StateOf& state_of) {
-  const Stopwatch watch(assembly_seconds_);
-  kinematics_.linearise(state_);
-  k.set_zero();
-  const auto add = [&](const auto& nodes, bool rotations, const auto& force, auto& values) {
-    const Expansion expansion(kinematics_, map_, nodes, rotations);
-    if (expansion.plain()) return add_free(expansion.blocks(), values, held(), k);
-    const MatX& b = expansion.matrix();
-    MatX transformed = b.transpose() * values * b;
-    LinkTerms(kinematics_, map_, model_, expansion, transformed).add(nodes, rotations, force);
-    add_free(expansion.blocks(), transformed, held(), k);
-  };
+template <class StateOf, class Visit>
+void System::for_each_stiffness(const StateOf& state_of, const Visit& visit) const {
   for_each_own([&](const auto& element) {
     auto c = contribution(model_, state_of(element), element, Want::tangent);
-    add(element.nodes, uses_rotations(model_, element), c.force, c.tangent);
+    visit(element.nodes, uses_rotations(model_, element), c.force, c.tangent);
   });
   for_each_pressed([&](const model::FacetNodes& nodes, double pressure) {
     auto c = pressure_contribution(model_, state_, nodes, pressure, Want::tangent);
     c.force = -c.force;
     c.tangent = -c.tangent;
-    add(nodes, false, c.force, c.tangent);
+    visit(nodes, false, c.force, c.tangent);
   });
   for (const auto& link : model_.links) {  // dead loads at the end of an arm
     const auto& [force, moment] = std::pair(now_.force[link.follower], now_.moment[link.follower]);
@@ -101,8 +90,23 @@ void System::assemble_tangent(la::SymmetricMatrix& k, const StateOf& state_of) {
     Vec<6> load;
     load << -force, -moment;
     ElementMatrix none = ElementMatrix::Zero(turns ? 6 : 3, turns ? 6 : 3);
-    add(std::array<int, 1>{link.follower}, turns, load, none);
+    visit(std::array<int, 1>{link.follower}, turns, load, none);
   }
+}
+
+template <class StateOf>
+void System::assemble_tangent(la::SymmetricMatrix& k, const StateOf& state_of) {
+  const Stopwatch watch(assembly_seconds_);
+  kinematics_.linearise(state_);
+  k.set_zero();
+  for_each_stiffness(state_of, [&](const auto& nodes, bool rotations, const auto& force, auto& values) {
+    const Expansion expansion(kinematics_, map_, nodes, rotations);
+    if (expansion.plain()) return add_free(expansion.blocks(), values, held(), k);
+    const MatX& b = expansion.matrix();
+    MatX transformed = b.transpose() * values * b;
+    LinkTerms(kinematics_, map_, model_, expansion, transformed).add(nodes, rotations, force);
+    add_free(expansion.blocks(), transformed, held(), k);
+  });
   for (int block = map_.layout.first; block < map_.layout.first + map_.layout.local; ++block) {
     Mat3 identity = Mat3::Zero();
     for (int c = 0; c < 3; ++c)
@@ -114,6 +118,22 @@ void System::assemble_tangent(la::SymmetricMatrix& k, const StateOf& state_of) {
 
 void System::tangent(la::SymmetricMatrix& k) {
   assemble_tangent(k, [&](const auto&) -> const model::State& { return state_; });
+}
+
+std::vector<double> System::stiffness_times(const std::vector<double>& increment) {
+  kinematics_.linearise(state_);
+  std::vector<double> product(origin_.size(), 0.0);
+  const auto here = [&](const auto&) -> const model::State& { return state_; };
+  for_each_stiffness(here, [&](const auto& nodes, bool rotations, const auto& force, const auto& values) {
+    const Expansion expansion(kinematics_, map_, nodes, rotations);
+    if (expansion.plain())
+      return expansion.add((values * expansion.template rows_of<VecX>(increment)).eval(), product);
+    const MatX& b = expansion.matrix();
+    MatX transformed = b.transpose() * values * b;
+    LinkTerms(kinematics_, map_, model_, expansion, transformed).add(nodes, rotations, force);
+    expansion.add_product(transformed, increment, product);
+  });
+  return product;
 }
 
 la::SymmetricMatrix System::stressed_tangent(const la::Vector& response, double part) {
