@@ -71,11 +71,11 @@ class Rule {
  private:
   /// What is watched, from its place in the undisturbed structure at the start of the step: imperfection and
   /// motion [m].
-  double motion() const {
+  Vec3 motion() const {
     Vec3 mean = mean_of(context_.system().state().displacement, nodes_) -
                 mean_of(question_.rest.state.displacement, nodes_);
     if (!question_.shape.empty()) mean += signs_.imperfection * mean_of(question_.shape, nodes_);
-    return mean.norm();
+    return mean;
   }
 
   /// Notes the point, or why there is none or it tells nothing.
@@ -97,7 +97,12 @@ class Rule {
           fmt::format("the disturbed structure is unstable at load factor {:.5g}: {} negative pivot{}",
                       lambda, path.inertia.negative, path.inertia.negative == 1 ? "" : "s");
     else
-      result_.path.push_back({{"lambda", lambda}, {"monitor", motion()}});
+      note(lambda, motion());
+  }
+
+  void note(double lambda, const Vec3& motion) {
+    motions_.push_back(motion);
+    result_.path.push_back({{"lambda", lambda}, {"monitor", motion.norm()}});
   }
 
   void make_step(int k) {
@@ -109,26 +114,31 @@ class Rule {
           options_.step, *question_.first);
       return;
     }
-    const double before = watched();
+    const double largest = largest_so_far(), expected = proportional(k).norm();
     follow_stage(lambda, fmt::format("load factor {:.4g}", lambda));
     if (!result_.criterion.empty()) return;
-    const double now = watched();
-    if (k > 1 && now > options_.growth * before && now > proportion * proportional(k, before)) {
+    const double now = motions_.back().norm();
+    if (k > 1 && now > options_.growth * largest && now > proportion * expected) {
       result_.criterion = fmt::format(
           "the monitored displacement grows {:.4g} times, more than {:g}, in the next step of {:g} of "
           "the linear value",
-          now / before, options_.growth, options_.step);
+          now / largest, options_.growth, options_.step);
       return;
     }
     result_.critical = lambda;
   }
 
-  double watched() const { return result_.path.back()["monitor"].get<double>(); }
+  /// An imperfection may point against the motion under the load, which then passes through zero.
+  double largest_so_far() const {
+    double largest = 0;
+    for (const Vec3& motion : motions_) largest = std::max(largest, motion.norm());
+    return largest;
+  }
 
   /// Where a motion that has grown as the load did until step k - 1 comes in step k: growing so is no sign of
   /// anything, in the first steps least of all.
-  double proportional(int k, double before) const {
-    return before + std::max(0.0, before - result_.path.front()["monitor"].get<double>()) / (k - 1);
+  Vec3 proportional(int k) const {
+    return motions_.back() + (motions_.back() - motions_.front()) / std::max(1, k - 1);
   }
 
   static constexpr double proportion = 1.25;  // a motion is more than proportional from here on
@@ -137,6 +147,7 @@ class Rule {
   const Question& question_;
   Signs signs_;
   std::vector<int> nodes_;
+  Points motions_;  // at the points of the path
   RuleResult result_;
 };
 

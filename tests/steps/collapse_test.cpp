@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <tautline/core/types.hpp>
 #include <tautline/deck/deck.hpp>
@@ -19,7 +20,7 @@
 namespace tautline::steps {
 namespace {
 
-using output::Json;
+using Json = nlohmann::ordered_json;
 using output::test::put;
 using output::test::TemporaryDirectory;
 
