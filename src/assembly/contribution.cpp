@@ -71,6 +71,16 @@ Contribution contribution(const Model& model, const State& state, const Cable& c
   return taken(element::evaluate_cable(data.properties, data.x_ref, u, want), want);
 }
 
+Contribution contribution(const Model& model, const State& state, const Cable& cable, Branch branch,
+                          Want want) {
+  if (branch == Branch::own) return contribution(model, state, cable, want);
+  if (branch == Branch::slack) return {ElementVector::Zero(6), ElementMatrix::Zero(6, 6)};
+  auto data = cable_data(model, cable);
+  data.properties.carries_compression = true;
+  return taken(
+      element::evaluate_cable(data.properties, data.x_ref, displacements<2>(state, cable.nodes), want), want);
+}
+
 Contribution contribution(const Model& model, const State& state, const Beam& beam, Want want) {
   return taken(element::evaluate_beam(beam_section(model, beam), beam_geometry(model, beam),
                                       beam_motion(state, beam), want),

@@ -22,6 +22,9 @@ struct Contribution {
 };
 
 Contribution contribution(const model::Model&, const model::State&, const model::Cable&, element::Want);
+/// A cable, or a catenary without weight, on a branch of its law.
+Contribution contribution(const model::Model&, const model::State&, const model::Cable&, Branch,
+                          element::Want);
 Contribution contribution(const model::Model&, const model::State&, const model::Beam&, element::Want);
 Contribution contribution(const model::Model&, const model::State&, const model::Membrane&, element::Want);
 Contribution contribution(const model::Model&, const model::State&, const model::Shell&, element::Want);

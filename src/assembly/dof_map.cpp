@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <tautline/assembly/kinematics.hpp>
 #include <tautline/la/session.hpp>
 #include <tautline/mesh/partition.hpp>
 
@@ -61,48 +62,40 @@ void number_blocks(const Freedom& free, DofMap& map) {
   map.layout.total = next;
 }
 
+/// Unknown blocks of each node, from the very dependences that assembly multiplies by.
 void find_unknowns(const model::Model& model, DofMap& map) {
-  map.displacement_unknowns.resize(model.nodes.size());
-  map.rotation_unknowns.resize(model.nodes.size());
-  const auto add = [](std::vector<int>& to, int block) {
-    if (block >= 0) to.push_back(block);
+  const Kinematics kinematics(model, map);
+  const auto blocks_of = [](const std::vector<Dependence>& list) {
+    std::vector<int> blocks;
+    for (const auto& dependence : list) blocks.push_back(dependence.block);
+    return blocks;
   };
-  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
-    add(map.displacement_unknowns[i], map.displacement_block[i]);
-    add(map.rotation_unknowns[i], map.rotation_block[i]);
+  for (int i = 0; i < static_cast<int>(model.nodes.size()); ++i) {
+    map.displacement_unknowns.push_back(blocks_of(kinematics.displacement(i)));
+    map.rotation_unknowns.push_back(blocks_of(kinematics.rotation(i)));
   }
-  const auto append = [](std::vector<int>& to, const std::vector<int>& from) {
-    to.insert(to.end(), from.begin(), from.end());
-  };
-  for (const int i : model::links_in_order(model)) {
-    const auto& link = model.links[i];
-    append(map.displacement_unknowns[link.follower], map.displacement_unknowns[link.leader]);
-    append(map.displacement_unknowns[link.follower], map.rotation_unknowns[link.leader]);
-    if (!link.rotation_free) append(map.rotation_unknowns[link.follower], map.rotation_unknowns[link.leader]);
-  }
-  for (const auto& pair : model.cyclic_pairs) {
-    add(map.displacement_unknowns[pair.follower], map.displacement_block[pair.leader]);
-    add(map.rotation_unknowns[pair.follower], map.rotation_block[pair.leader]);
-  }
-  for (const auto& constraint : model.constraints)
-    for (std::size_t k = 1; k < constraint.terms.size(); ++k)
-      add(map.displacement_unknowns[constraint.terms.front().node],
-          map.displacement_block[constraint.terms[k].node]);
 }
 
-/// Blocks that share an element with each block of the rank's range, later ones only (upper triangle).
+/// Blocks that share an element, or a dead load on a follower, with each block of the rank's range, later
+/// ones only (upper triangle).
 la::BlockPattern upper_pattern(const model::Model& model, const DofMap& map) {
   const int first = map.layout.first, last = first + map.layout.local;
   std::vector<std::vector<int>> columns(map.layout.local);
+  const auto add = [&](const std::vector<int>& blocks) {
+    for (const int row : blocks)
+      if (map.owns(row))
+        for (const int column : blocks)
+          if (column > row) columns[row - first].push_back(column);
+  };
   model::for_each_kind(model, [&](const auto& elements) {
-    for (const auto& element : elements) {
-      const auto blocks = unknowns_of(model, map, element);
-      for (const int row : blocks)
-        if (map.owns(row))
-          for (const int column : blocks)
-            if (column > row) columns[row - first].push_back(column);
-    }
+    for (const auto& element : elements) add(unknowns_of(model, map, element));
   });
+  for (const auto& link : model.links) {
+    std::vector<int> blocks = map.displacement_unknowns[link.follower];
+    const auto& turns = map.rotation_unknowns[link.follower];
+    blocks.insert(blocks.end(), turns.begin(), turns.end());
+    add(blocks);
+  }
   la::BlockPattern pattern;
   for (auto& row : columns) {
     std::sort(row.begin(), row.end());

@@ -26,6 +26,7 @@ Vec<6> catenary_rate(const model::Model& model, const model::Cable& cable, const
   const auto force = [&](double change) {
     auto changed = properties;
     (length ? changed.unstressed_length : changed.axial_stiffness) += change;
+    changed.line_load *= properties.unstressed_length / changed.unstressed_length;  // in all the same
     return Vec<6>(
         element::evaluate_catenary(changed, model.acceleration, x_ref, u, element::Want::force).force);
   };

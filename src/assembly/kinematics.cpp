@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,96 @@ Mat3 skew(const Vec3& v) {
   matrix << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
   return matrix;
 }
+
+using Term = model::LinearConstraint::Term;
+
+/// Solves the linear constraints for their first components in terms of components that follow nothing: along
+/// arms of no length to the leader, round a cyclic structure to the leading face, through other constraints.
+class ConstraintSolver {
+ public:
+  ConstraintSolver(const model::Model& model, const std::vector<int>& link_of)
+      : model_(model), link_of_(link_of), cyclic_of_(model.nodes.size(), -1) {
+    for (std::size_t i = 0; i < model.cyclic_pairs.size(); ++i)
+      cyclic_of_[model.cyclic_pairs[i].follower] = static_cast<int>(i);
+    for (const auto& constraint : model.constraints) {
+      Term first = constraint.terms.front();
+      first.node = leader_at_its_place(first.node, constraint);
+      if (cyclic_of_[first.node] >= 0)
+        refuse(constraint, first.node, "follows another node by cyclic symmetry: write another node first");
+      const auto [other, is_new] = by_component_.emplace(key(first), constrained.size());
+      if (!is_new)
+        refuse(constraint, first.node,
+               "follows from another linear constraint in that direction: write another node first");
+      constrained.push_back(first);
+    }
+    resolved.resize(constrained.size());
+    mark_.assign(constrained.size(), Mark::none);
+    for (std::size_t i = 0; i < constrained.size(); ++i) resolve(i);
+  }
+
+  std::vector<Term> constrained;
+  std::vector<std::vector<Term>> resolved;
+
+ private:
+  enum class Mark { none, begun, done };
+
+  static int key(const Term& term) { return 3 * term.node + term.component; }
+
+  [[noreturn]] static void refuse(const model::LinearConstraint& constraint, int node, const char* why) {
+    throw ModelError(
+        fmt::format("{}a linear constraint: node {} {}", model::prefix(constraint.where), node + 1, why));
+  }
+
+  int leader_at_its_place(int node, const model::LinearConstraint& constraint) const {
+    while (link_of_[node] >= 0) {
+      const auto& link = model_.links[link_of_[node]];
+      if (model_.nodes[link.leader] != model_.nodes[node])
+        refuse(constraint, node, "follows another node through an arm: write its leader in the constraint");
+      node = link.leader;
+    }
+    return node;
+  }
+
+  void resolve(std::size_t index) {
+    const auto& constraint = model_.constraints[index];
+    if (mark_[index] == Mark::begun)
+      refuse(constraint, constrained[index].node, "follows itself, through this constraint or a ring of them");
+    if (mark_[index] == Mark::done) return;
+    mark_[index] = Mark::begun;
+    const double first = constraint.terms.front().coefficient;
+    for (std::size_t k = 1; k < constraint.terms.size(); ++k) {
+      const auto& term = constraint.terms[k];
+      add({leader_at_its_place(term.node, constraint), term.component, -term.coefficient / first}, index);
+    }
+    mark_[index] = Mark::done;
+  }
+
+  /// Adds a component of a node that follows no link, or what it follows from, to what `index` is the sum of.
+  void add(const Term& term, std::size_t index) {
+    if (const int cyclic = cyclic_of_[term.node]; cyclic >= 0) {
+      const auto& pair = model_.cyclic_pairs[cyclic];
+      for (int c = 0; c < 3; ++c)
+        if (const double by = pair.turn(term.component, c); by != 0)
+          add({pair.leader, c, by * term.coefficient}, index);
+      return;
+    }
+    const auto found = by_component_.find(key(term));
+    if (found == by_component_.end()) {
+      resolved[index].push_back(term);
+      return;
+    }
+    resolve(found->second);
+    const auto of = resolved[found->second];
+    for (const auto& part : of)
+      resolved[index].push_back({part.node, part.component, part.coefficient * term.coefficient});
+  }
+
+  const model::Model& model_;
+  const std::vector<int>& link_of_;
+  std::vector<int> cyclic_of_;  // by node: the pair whose follower it is, or -1
+  std::map<int, std::size_t> by_component_;
+  std::vector<Mark> mark_;
+};
 
 /// Directions in which a block is held; orthonormal, at most three.
 class HeldDirections {
@@ -65,8 +156,15 @@ Kinematics::Kinematics(const model::Model& model, const DofMap& map)
       order_(model::links_in_order(model)) {
   for (std::size_t i = 0; i < model.links.size(); ++i)
     link_of_[model.links[i].follower] = static_cast<int>(i);
+  resolve_constraints();
   hold({});
   linearise(model::State::reference(model));
+}
+
+void Kinematics::resolve_constraints() {
+  ConstraintSolver solver(*model_, link_of_);
+  constrained_ = std::move(solver.constrained);
+  resolved_ = std::move(solver.resolved);
 }
 
 void Kinematics::hold(const std::vector<model::Support>& supports) {
@@ -90,21 +188,21 @@ void Kinematics::hold(const std::vector<model::Support>& supports) {
       frame_[block].setIdentity();
       for (std::size_t c = link.hinge.size(); c < 3; ++c) held_[3 * block + c] = true;
     }
-  for (const auto& constraint : model_->constraints) {
-    const auto& first = constraint.terms.front();
+  for (std::size_t i = 0; i < constrained_.size(); ++i) {
+    const auto& first = constrained_[i];
     const int block = map_->displacement_block[first.node];
     if (held_[3 * block + first.component] || frame_[block] != Mat3::Identity())
       throw ModelError(fmt::format(
-          "node {} is held by a support in a direction that follows from a linear constraint: write the "
+          "{}node {} is held by a support in a direction that follows from a linear constraint: write the "
           "constraint with another node first, or hold the others",
-          first.node + 1));
+          model::prefix(model_->constraints[i].where), first.node + 1));
     held_[3 * block + first.component] = true;
   }
   for (std::size_t node = 0; node < plain_.size(); ++node) {
     const int u = map_->displacement_block[node], r = map_->rotation_block[node];
     plain_[node] = u >= 0 && frame_[u] == Mat3::Identity() && (r < 0 || frame_[r] == Mat3::Identity());
   }
-  for (const auto& constraint : model_->constraints) plain_[constraint.terms.front().node] = false;
+  for (const auto& first : constrained_) plain_[first.node] = false;
   find_fixed_dependences();
 }
 
@@ -118,20 +216,20 @@ void Kinematics::find_fixed_dependences() {
     own(m.displacement_block[node], displacement_[node]);
     own(m.rotation_block[node], rotation_[node]);
   }
-  for (const auto& pair : model_->cyclic_pairs) {
-    const int u = m.displacement_block[pair.leader], r = m.rotation_block[pair.leader];
-    displacement_[pair.follower] = {{u, pair.turn * frame_[u]}};
-    if (r >= 0) rotation_[pair.follower] = {{r, pair.turn * frame_[r]}};
-  }
-  for (const auto& constraint : model_->constraints) {
-    const auto& first = constraint.terms.front();
-    for (std::size_t k = 1; k < constraint.terms.size(); ++k) {
-      const auto& term = constraint.terms[k];
+  for (std::size_t i = 0; i < constrained_.size(); ++i)
+    for (const auto& term : resolved_[i]) {
       const int block = m.displacement_block[term.node];
       Mat3 matrix = Mat3::Zero();
-      matrix.row(first.component) = -term.coefficient / first.coefficient * frame_[block].row(term.component);
-      displacement_[first.node].push_back({block, matrix});
+      matrix.row(constrained_[i].component) = term.coefficient * frame_[block].row(term.component);
+      displacement_[constrained_[i].node].push_back({block, matrix});
     }
+  const auto turned = [](const Mat3& turn, std::vector<Dependence> list) {
+    for (auto& dependence : list) dependence.matrix = turn * dependence.matrix;
+    return list;
+  };
+  for (const auto& pair : model_->cyclic_pairs) {
+    displacement_[pair.follower] = turned(pair.turn, displacement_[pair.leader]);
+    rotation_[pair.follower] = turned(pair.turn, rotation_[pair.leader]);
   }
 }
 
@@ -185,13 +283,15 @@ model::State Kinematics::moved(const model::State& from, const std::vector<doubl
 }
 
 void Kinematics::carry_followers(model::State& state) const {
-  for (const auto& constraint : model_->constraints) {
-    const auto& first = constraint.terms.front();
+  for (std::size_t i = 0; i < constrained_.size(); ++i) {
     double sum = 0;
-    for (std::size_t k = 1; k < constraint.terms.size(); ++k)
-      sum += constraint.terms[k].coefficient *
-             state.displacement[constraint.terms[k].node][constraint.terms[k].component];
-    state.displacement[first.node][first.component] = -sum / first.coefficient;
+    for (const auto& term : resolved_[i])
+      sum += term.coefficient * state.displacement[term.node][term.component];
+    state.displacement[constrained_[i].node][constrained_[i].component] = sum;
+  }
+  for (const auto& pair : model_->cyclic_pairs) {
+    state.displacement[pair.follower] = pair.turn * state.displacement[pair.leader];
+    state.rotation[pair.follower] = pair.turn * state.rotation[pair.leader] * pair.turn.transpose();
   }
   for (const int i : order_) {
     const auto& link = model_->links[i];
@@ -203,10 +303,6 @@ void Kinematics::carry_followers(model::State& state) const {
     for (std::size_t k = 0; k < link.hinge.size(); ++k)
       rotation = rotation * rotation_of(link.hinge[k] * state.hinge_angle[i][static_cast<int>(k)]);
     state.rotation[link.follower] = rotation;
-  }
-  for (const auto& pair : model_->cyclic_pairs) {
-    state.displacement[pair.follower] = pair.turn * state.displacement[pair.leader];
-    state.rotation[pair.follower] = pair.turn * state.rotation[pair.leader] * pair.turn.transpose();
   }
 }
 

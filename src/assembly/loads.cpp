@@ -47,13 +47,11 @@ void add_surface(const Model& model, const Facet& facet, const Vec3& load, Actin
     share(element::membrane_mass<4>(1, reference_nodes<4>(model, facet.nodes)), 4);
 }
 
-/// Weight of an element: its mass under the acceleration. Catenaries feel it themselves.
+/// Weight of an element as drawn: its mass under the acceleration.
 template <class Element>
-void add_weight(const Model& model, const State& state, const Element& element, const Vec3& acceleration,
+void add_weight(const Model& model, const State& drawn, const Element& element, const Vec3& acceleration,
                 Acting& to) {
-  if constexpr (std::is_same_v<Element, Cable>)
-    if (model.groups[element.group].kind == ElementKind::catenary) return;
-  const auto mass = mass_of(model, state, element, MassKind::consistent);
+  const auto mass = mass_of(model, drawn, element, MassKind::consistent);
   const int n = static_cast<int>(element.nodes.size()), stride = static_cast<int>(mass.rows()) / n;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
@@ -63,6 +61,25 @@ void add_weight(const Model& model, const State& state, const Element& element, 
     }
 }
 
+/// Weight of everything but catenaries, which feel it along their length. Cables weigh what is cut for the
+/// initial strains in `to`.
+void add_weights(const Model& model, Acting& to) {
+  if (to.acceleration.isZero(0)) return;
+  const State drawn = State::reference(model);
+  const auto add = [&](const auto& element) { add_weight(model, drawn, element, to.acceleration, to); };
+  for (std::size_t i = 0; i < model.cables.size(); ++i) {
+    Cable cable = model.cables[i];
+    cable.initial_strain = to.strain[i];
+    if (model.groups[cable.group].kind != ElementKind::catenary) add(cable);
+  }
+  for (const auto& beam : model.beams) add(beam);
+  for (const auto& membrane : model.membranes) add(membrane);
+  for (const auto& shell : model.shells) add(shell);
+  for (const auto& mass : model.masses) add(mass);
+  for (std::size_t i = 0; i < model.beams.size(); ++i)
+    to.line[model.cables.size() + i] += beam_section(model, model.beams[i]).mass_per_length * to.acceleration;
+}
+
 /// Mean of a field over a line, by Simpson's rule: exact up to the third power.
 double mean_over(const std::function<double(const Vec3&)>& field, const Model& model,
                  const std::array<int, 2>& nodes) {
@@ -70,8 +87,8 @@ double mean_over(const std::function<double(const Vec3&)>& field, const Model& m
   return (field(a) + 4 * field((a + b) / 2) + field(b)) / 6;
 }
 
-/// Mean of a field over a facet: of the middles of a triangle's sides, exact up to the second power; of the
-/// points of Gauss's rule of a quadrilateral.
+/// Mean of a field over a facet, exact up to the second power of the place on a plane one: of the middles of a
+/// triangle's sides; of the points of Gauss's rule of a quadrilateral, each with the area that it stands for.
 double mean_over(const std::function<double(const Vec3&)>& field, const Model& model,
                  const FacetNodes& nodes) {
   const auto x = [&](std::size_t i) -> const Vec3& { return model.nodes[nodes[static_cast<int>(i)]]; };
@@ -80,14 +97,19 @@ double mean_over(const std::function<double(const Vec3&)>& field, const Model& m
     for (std::size_t i = 0; i < 3; ++i) sum += field((x(i) + x((i + 1) % 3)) / 2) / 3;
     return sum;
   }
+  double area = 0;
   const double g = 1 / std::sqrt(3.0);
   for (const double r : {-g, g})
-    for (const double s : {-g, g})
-      sum += field(((1 - r) * (1 - s) * x(0) + (1 + r) * (1 - s) * x(1) + (1 + r) * (1 + s) * x(2) +
-                    (1 - r) * (1 + s) * x(3)) /
-                   4) /
-             4;
-  return sum;
+    for (const double s : {-g, g}) {
+      const Vec3 by_r = (1 - s) * (x(1) - x(0)) + (1 + s) * (x(2) - x(3)),
+                 by_s = (1 - r) * (x(3) - x(0)) + (1 + r) * (x(2) - x(1));
+      const double share = by_r.cross(by_s).norm();
+      area += share;
+      sum += share * field(((1 - r) * (1 - s) * x(0) + (1 + r) * (1 - s) * x(1) + (1 + r) * (1 + s) * x(2) +
+                            (1 - r) * (1 + s) * x(3)) /
+                           4);
+    }
+  return sum / area;
 }
 
 /// Changes of temperature of the elements that a load names, behind those of `first` elements.
@@ -97,8 +119,13 @@ void add_temperature(const Model& model, const std::vector<Element>& elements,
   for (const int i : selected) {
     double& change = to.temperature[first + static_cast<std::size_t>(i)];
     change += load.temperature_change;
-    if (load.temperature_field)
-      change += mean_over(load.temperature_field, model, elements[static_cast<std::size_t>(i)].nodes);
+    if (!load.temperature_field) continue;
+    const auto& nodes = elements[static_cast<std::size_t>(i)].nodes;
+    const double mean = mean_over(load.temperature_field, model, nodes);
+    if (!std::isfinite(mean))
+      throw ModelError(fmt::format("{}: temperature_field has no value within the element at node {}", load.title(),
+                                   *std::begin(nodes) + 1));
+    change += mean;
   }
 }
 
@@ -118,9 +145,9 @@ void add_temperatures(const Model& model, const Selection& selected, const Load&
     const Vec3 middle = (model.nodes[a] + model.nodes[b]) / 2, gradient = load.temperature_gradient(middle);
     if (!gradient.allFinite())
       throw ModelError(fmt::format(
-          "load \"{}\": temperature_field has no slope at ({:.4g}, {:.4g}, {:.4g}), the middle of a "
+          "{}: temperature_field has no slope at ({:.4g}, {:.4g}, {:.4g}), the middle of a "
           "beam, which bends with it",
-          load.name, middle.x(), middle.y(), middle.z()));
+          load.title(), middle.x(), middle.y(), middle.z()));
     to.temperature_gradient[static_cast<std::size_t>(i)] += gradient;
   }
 }
@@ -128,42 +155,42 @@ void add_temperatures(const Model& model, const Selection& selected, const Load&
 }  // namespace
 
 void System::add_element_loads(const Load& load, Acting& to) const {
-  for (const auto& name : load.on) {
-    const auto selected = model_.select(name);
-    if (!load.line_force.isZero(0) || !load.line_moment.isZero(0)) {
-      for (const int i : selected.cables)
-        add_line(model_, model_.cables[i].nodes[0], model_.cables[i].nodes[1], false, load, to);
-      for (const int i : selected.beams) {
-        const auto& [a, b] = model_.beams[i].nodes;
-        add_line(model_, a, b, true, load, to);
-        to.line[static_cast<std::size_t>(i)] += load.line_force;
-      }
-      for (const auto& [a, b] : selected.edges) add_line(model_, a, b, false, load, to);
-    }
-    for (const int i : selected.membranes) {
-      add_surface(model_, model_.membranes[i], load.surface_force, to);
-      to.pressure[static_cast<std::size_t>(i)] += load.pressure;
-    }
-    for (const int i : selected.shells) {
-      add_surface(model_, model_.shells[i], load.surface_force, to);
-      to.pressure[model_.membranes.size() + static_cast<std::size_t>(i)] += load.pressure;
-    }
-    if (load.temperature_change != 0 || load.temperature_field) add_temperatures(model_, selected, load, to);
+  const auto selected = model_.select(load.on);
+  for (const int i : selected.cables) {
+    const auto& cable = model_.cables[i];
+    if (model_.groups[cable.group].kind == ElementKind::catenary)
+      to.line[static_cast<std::size_t>(i)] += load.line_force;
+    else
+      add_line(model_, cable.nodes[0], cable.nodes[1], false, load, to);
   }
+  for (const int i : selected.beams) {
+    const auto& [a, b] = model_.beams[i].nodes;
+    add_line(model_, a, b, true, load, to);
+    to.line[model_.cables.size() + static_cast<std::size_t>(i)] += load.line_force;
+  }
+  for (const auto& [a, b] : selected.edges) add_line(model_, a, b, false, load, to);
+  for (const int i : selected.membranes) {
+    add_surface(model_, model_.membranes[i], load.surface_force, to);
+    to.pressure[static_cast<std::size_t>(i)] += load.pressure;
+  }
+  for (const int i : selected.shells) {
+    add_surface(model_, model_.shells[i], load.surface_force, to);
+    to.pressure[model_.membranes.size() + static_cast<std::size_t>(i)] += load.pressure;
+  }
+  if (load.heats()) add_temperatures(model_, selected, load, to);
 }
 
-Acting System::acting(const Boundary& boundary) const {
-  Acting result{
-      Points(model_.nodes.size(), Vec3::Zero()),
-      Points(model_.nodes.size(), Vec3::Zero()),
-      Points(model_.beams.size(), Vec3::Zero()),
-      std::vector<double>(model_.membranes.size() + model_.shells.size(), 0.0),
-      std::vector<double>(
-          model_.cables.size() + model_.beams.size() + model_.membranes.size() + model_.shells.size(), 0.0),
-      Points(model_.beams.size(), Vec3::Zero()),
-      {},
-      Vec3::Zero()};
-  for (const auto& cable : model_.cables) result.strain.push_back(cable.initial_strain);
+Acting System::acting(const Boundary& boundary, const std::vector<double>& strains) const {
+  const std::size_t n_facets = model_.membranes.size() + model_.shells.size(),
+                    n_lines = model_.cables.size() + model_.beams.size();
+  Acting result{Points(model_.nodes.size(), Vec3::Zero()),
+                Points(model_.nodes.size(), Vec3::Zero()),
+                Points(n_lines, Vec3::Zero()),
+                std::vector<double>(n_facets, 0.0),
+                std::vector<double>(n_lines + n_facets, 0.0),
+                Points(model_.beams.size(), Vec3::Zero()),
+                strains,
+                Vec3::Zero()};
   for (const auto& load : boundary.loads) {
     for (const int node : load.nodes) {
       result.force[node] += load.force;
@@ -172,12 +199,7 @@ Acting System::acting(const Boundary& boundary) const {
     add_element_loads(load, result);
     result.acceleration += load.acceleration;
   }
-  for (std::size_t i = 0; i < model_.beams.size(); ++i)
-    result.line[i] += beam_section(model_, model_.beams[i]).mass_per_length * result.acceleration;
-  if (!result.acceleration.isZero(0))
-    for_each_kind(model_, [&](const auto& elements) {
-      for (const auto& element : elements) add_weight(model_, state_, element, result.acceleration, result);
-    });
+  add_weights(model_, result);
   return result;
 }
 
@@ -235,10 +257,8 @@ System::NodalForces System::ground_springs() const {
   return result;
 }
 
-System::NodalForces System::applied() const {
+System::NodalForces System::external() const {
   NodalForces result{now_.force, now_.moment};
-  for (std::size_t node = 0; node < model_.nodes.size(); ++node)
-    if (!map_.rotational[node]) result.moment[node].setZero();
   const auto add_pressure = [&](const auto& facets, std::size_t first) {
     for (std::size_t i = 0; i < facets.size(); ++i) {
       const double pressure = now_.pressure[first + i];
@@ -250,6 +270,11 @@ System::NodalForces System::applied() const {
   };
   add_pressure(model_.membranes, 0);
   add_pressure(model_.shells, model_.membranes.size());
+  return result;
+}
+
+System::NodalForces System::applied() const {
+  NodalForces result = external();
   for (const auto& cable : model_.cables) {
     if (model_.groups[cable.group].kind != ElementKind::catenary) continue;
     // The catenary's end forces, weight included; at the ends they add up to the weight turned round.

@@ -3,9 +3,12 @@
 /// Loops over a rank's share of the elements, and what all matrices need.
 
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include <tautline/assembly/system.hpp>
+
+#include "assembly/contribution.hpp"
 
 namespace tautline::assembly {
 
@@ -20,6 +23,15 @@ void add_free(std::span<const int> blocks, Matrix& values, const std::vector<boo
         values.col(3 * static_cast<int>(b) + c).setZero();
       }
   to.add(blocks, values.data());
+}
+
+template <class Element, class Want>
+auto System::answer(const model::State& state, const Element& element, Want want) const {
+  if constexpr (std::is_same_v<Element, model::Cable>)
+    if (!branches_.empty())
+      return contribution(model_, state, element,
+                          branches_[static_cast<std::size_t>(&element - model_.cables.data())], want);
+  return contribution(model_, state, element, want);
 }
 
 template <class Visit>

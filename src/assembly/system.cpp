@@ -11,6 +11,7 @@
 
 #include "assembly/contribution.hpp"
 #include "assembly/expansion.hpp"
+#include "assembly/load_audit.hpp"
 #include "assembly/own_elements.hpp"
 
 namespace tautline::assembly {
@@ -70,42 +71,11 @@ System::System(model::Model model)
   mine(model_.masses, share_.masses);
   origin_.assign(static_cast<std::size_t>(n_dofs()), 0.0);
   magnitude_ = start_residual_ = origin_;
-  end_ = start_ = now_ = acting({});
+  for (const auto& cable : model_.cables) now_.strain.push_back(cable.initial_strain);
+  end_ = start_ = now_ = acting({}, now_.strain);
   for (const auto& group : model_.groups)
     if (model::is_cable_like(group.kind))
       support_stiffness_ = std::max(support_stiffness_, group.cable.axial_stiffness / size_);
-  find_rounding();
-}
-
-void System::find_rounding() {
-  constexpr double of_lines = 5e-15, of_facets = 1e-13;  // some ten and some hundred units in the last place
-  double relative = of_lines;
-  const auto note = [&](double& to, double value) { to = std::max(to, relative * value); };
-  for (const auto& group : model_.groups) {
-    if (model::is_cable_like(group.kind)) note(rounding_force_of_lines_, group.cable.axial_stiffness);
-    if (group.kind == model::ElementKind::beam) note(rounding_force_of_lines_, group.beam.axial_stiffness);
-    relative = of_facets;
-    if (group.kind == model::ElementKind::membrane)
-      note(rounding_force_, group.membrane.tension_stiffness * size_);
-    if (group.kind == model::ElementKind::shell) {
-      const double stretching = group.shell.young_modulus * group.shell.thickness;
-      note(rounding_force_, stretching * size_);
-      note(rounding_moment_, stretching * group.shell.thickness * size_);
-    }
-    relative = of_lines;
-  }
-  for (const auto& beam : model_.beams) {
-    const auto& section = model_.groups[beam.group].beam;
-    const double length = (model_.nodes[beam.nodes[1]] - model_.nodes[beam.nodes[0]]).norm();
-    const double bending = std::max(section.bending_stiffness_2, section.bending_stiffness_3);
-    note(rounding_force_of_lines_, bending / (length * length));
-    note(rounding_moment_, std::max(section.axial_stiffness * length, bending / length));
-  }
-  const double sum =
-      std::sqrt(static_cast<double>(model_.nodes.size()));  // of random errors, as norms see them
-  rounding_force_ = sum * std::max(rounding_force_, rounding_force_of_lines_);
-  rounding_force_of_lines_ *= sum;
-  rounding_moment_ *= sum;
 }
 
 void System::set_state(const model::State& state) {
@@ -125,7 +95,7 @@ void System::set_state(const model::State& state, const std::vector<double>& str
 void System::reset() {
   set_state(model::State::initial(model_));
   std::fill(turned_.begin(), turned_.end(), Vec3::Zero());
-  start_ = end_ = now_ = acting({});
+  start_ = end_ = now_ = acting({}, now_.strain);
 }
 
 std::vector<double> System::strains() const {
@@ -140,9 +110,10 @@ OutOfBalance System::begin_stage(const Boundary& boundary) {
   kinematics_.hold(boundary.supports);
   kinematics_.linearise(state_);
   start_ = now_;
-  end_ = acting(boundary);
-  end_.strain = wanted_strain_ ? std::move(*wanted_strain_) : start_.strain;
+  end_ = acting(boundary, wanted_strain_.value_or(start_.strain));
   wanted_strain_.reset();
+  audit_loads(boundary, end_.strain);
+  check_motions(boundary, map_, kinematics_);
   find_drives(boundary);
   note_prescribed(boundary);
   driven_to_ = committed_drive_ = 0;
@@ -188,6 +159,7 @@ void System::apply(double lambda) {
   lambda_ = lambda;
   now_ = start_.blended(end_, lambda);
   for (std::size_t i = 0; i < model_.cables.size(); ++i) model_.cables[i].initial_strain = now_.strain[i];
+  for (std::size_t i = 0; i < model_.cables.size(); ++i) model_.cables[i].line_load = now_.line[i];
   std::size_t next = 0;
   const auto warm = [&](auto& elements) {
     for (auto& element : elements) element.temperature_change = now_.temperature[next++];
@@ -198,7 +170,7 @@ void System::apply(double lambda) {
   warm(model_.shells);
   for (std::size_t i = 0; i < model_.beams.size(); ++i) {
     auto& beam = model_.beams[i];
-    beam.line_load = now_.line[i];
+    beam.line_load = now_.line[model_.cables.size() + i];
     beam.temperature_gradient = beam.frame.rightCols<2>().transpose() * now_.temperature_gradient[i];
   }
   model_.acceleration = now_.acceleration;
@@ -212,8 +184,7 @@ void System::add_forces(const model::State& state, const Kinematics& at, std::ve
     expansion.add(values.cwiseAbs(), magnitude);
   };
   for_each_own([&](const auto& element) {
-    add(element.nodes, uses_rotations(model_, element),
-        contribution(model_, state, element, Want::force).force);
+    add(element.nodes, uses_rotations(model_, element), answer(state, element, Want::force).force);
   });
   for_each_pressed([&](const model::FacetNodes& nodes, double pressure) {
     const Expansion expansion(at, map_, nodes, false);

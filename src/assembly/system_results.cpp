@@ -4,6 +4,7 @@
 
 #include <tautline/assembly/system.hpp>
 #include <tautline/la/session.hpp>
+#include <tautline/model/rounding.hpp>
 
 #include "assembly/contribution.hpp"
 #include "assembly/expansion.hpp"
@@ -69,32 +70,51 @@ double System::second_variation(const la::Vector& x) const {
   return la::sum_over_ranks(sum);
 }
 
+template <class Value>
+Vec<2> System::norms_by_kind(const Value& value) const {
+  Vec<2> squares = Vec<2>::Zero();
+  for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
+    if (map_.node_rank[node] != la::rank()) continue;
+    const auto add = [&](int block, double& sum) {
+      for (int c = 0; block >= 0 && c < 3; ++c) sum += std::pow(value(block, c), 2);
+    };
+    add(map_.displacement_block[node], squares[0]);
+    add(map_.rotation_block[node], squares[1]);
+  }
+  for (double& sum : squares) sum = la::sum_over_ranks(sum);
+  return squares.cwiseSqrt();
+}
+
+model::Rounding System::rounding_beside(const Vec<2>& forces_and_moments) const {
+  const auto digits = model::nodal_rounding(model_, state_);
+  return {digits.force + model::last_digit * forces_and_moments[0],
+          digits.moment + model::last_digit * forces_and_moments[1]};
+}
+
+model::Rounding System::rounding() const {
+  std::vector<double> force(origin_.size(), 0.0), magnitude(origin_.size(), 0.0);
+  add_forces(state_, kinematics_, force, magnitude);
+  return rounding_beside(
+      norms_by_kind([&](int block, int c) { return magnitude[static_cast<std::size_t>(3 * block + c)]; }));
+}
+
 analysis::ResidualNorms System::norms(const la::Vector& f) const {
   std::vector<double> own(static_cast<std::size_t>(3 * map_.layout.local));
   f.read(own);
-  double sums[4] = {0, 0, 0, 0};
-  for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
-    if (map_.node_rank[node] != la::rank()) continue;
-    const auto add = [&](int block, double& residual, double& reference) {
-      for (int c = 0; block >= 0 && c < 3; ++c) {
-        const double value = own[static_cast<std::size_t>(3 * (block - map_.layout.first) + c)];
-        residual += value * value;
-        reference += std::pow(magnitude_[static_cast<std::size_t>(3 * block + c)], 2);
-      }
-    };
-    add(map_.displacement_block[node], sums[0], sums[2]);
-    add(map_.rotation_block[node], sums[1], sums[3]);
-  }
-  for (double& sum : sums) sum = std::sqrt(la::sum_over_ranks(sum));
+  const auto residual = norms_by_kind(
+      [&](int block, int c) { return own[static_cast<std::size_t>(3 * (block - map_.layout.first) + c)]; });
+  const auto reference =
+      norms_by_kind([&](int block, int c) { return magnitude_[static_cast<std::size_t>(3 * block + c)]; });
+  const auto rounding = rounding_beside(reference);
   // Where nothing bends yet there is no moment to compare with: force times size stands in, far below any
   // real moment. Where moments alone act there is no force to compare with: moment over size stands in, below
   // any shear force that makes such moments.
-  return {sums[0],
-          sums[1],
-          std::max(sums[2], sums[3] / size_),
-          std::max(sums[3], 1e-3 * sums[2] * size_),
-          rounding_force_,
-          rounding_moment_};
+  return {residual[0],
+          residual[1],
+          std::max(reference[0], reference[1] / size_),
+          std::max(reference[1], 1e-3 * reference[0] * size_),
+          rounding.force,
+          rounding.moment};
 }
 
 double System::relative_size(const la::Vector& increment) const {
@@ -127,9 +147,58 @@ System::NodalForces System::reactions() const {
     if (map_.rotation_block[node] >= 0 && !is_hinge)
       result.moment[node] = held_part(map_.rotation_block[node]);
   }
-  for (const auto& constraint : model_.constraints) {  // what holds it is no support
-    const auto& first = constraint.terms.front();
+  for (const auto& first : kinematics_.constrained())  // what holds it is no support
     result.force[first.node][first.component] = 0;
+  return result;
+}
+
+System::NodalForces System::nodal_residual() const {
+  NodalForces result = external();
+  for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
+    result.force[node] *= -1;
+    result.moment[node] *= -1;
+  }
+  model::for_each_kind(model_, [&](const auto& elements) {
+    for (const auto& element : elements) {
+      const auto force = contribution(model_, state_, element, Want::force).force;
+      const auto n = static_cast<Eigen::Index>(element.nodes.size()), stride = force.size() / n;
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const auto node = static_cast<std::size_t>(element.nodes[static_cast<int>(i)]);
+        result.force[node] += force.template segment<3>(stride * i);
+        if (stride == 6) result.moment[node] += force.template segment<3>(stride * i + 3);
+      }
+    }
+  });
+  const auto order = model::links_in_order(model_);
+  for (auto i = order.rbegin(); i != order.rend(); ++i) {
+    const auto& link = model_.links[static_cast<std::size_t>(*i)];
+    Vec3 &force = result.force[link.follower], &moment = result.moment[link.follower];
+    result.force[link.leader] += force;
+    result.moment[link.leader] += moment + kinematics_.lever(*i).cross(force);
+    force = moment = Vec3::Zero();
+  }
+  return result;
+}
+
+System::NodalForces System::constraint_forces() const {
+  NodalForces result{Points(model_.nodes.size(), Vec3::Zero()), Points(model_.nodes.size(), Vec3::Zero())};
+  const auto residual = out_of_balance();
+  for (const auto& constraint : model_.constraints) {
+    const auto& first = constraint.terms.front();
+    const int block = map_.displacement_block[first.node];
+    const double multiplier =
+        residual[static_cast<std::size_t>(3 * block + first.component)] / first.coefficient;
+    for (const auto& term : constraint.terms)
+      result.force[term.node][term.component] += multiplier * term.coefficient;
+  }
+  if (model_.cyclic_pairs.empty()) return result;
+  const auto nodal = nodal_residual();
+  for (const auto& pair : model_.cyclic_pairs) {
+    const Vec3 &force = nodal.force[pair.follower], &moment = nodal.moment[pair.follower];
+    result.force[pair.follower] += force;
+    result.moment[pair.follower] += moment;
+    result.force[pair.leader] -= pair.turn.transpose() * force;
+    result.moment[pair.leader] -= pair.turn.transpose() * moment;
   }
   return result;
 }

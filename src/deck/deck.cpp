@@ -4,11 +4,11 @@
 #include <deck/keywords.hpp>
 #include <deck/parameters.hpp>
 #include <deck/reader.hpp>
-#include <deck/sha256.hpp>
 #include <deck/yaml_tree.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <tautline/core/sha256.hpp>
 #include <tautline/deck/deck.hpp>
 
 namespace tautline::deck {
@@ -61,6 +61,12 @@ void write_values(const Node& node, std::string& to) {
   }
 }
 
+/// Of what a mesh file holds; a file that cannot be read is complained of elsewhere.
+std::string content_fingerprint(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return sha256(std::string{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()});
+}
+
 void take_fingerprints(Deck& deck, const Node& root) {
   std::string rest;
   for (const auto& entry : root.entries) {
@@ -70,6 +76,7 @@ void take_fingerprints(Deck& deck, const Node& root) {
     rest += key;
     write_values(entry.value, rest);
   }
+  if (deck.model && !deck.model->mesh_file.empty()) rest += content_fingerprint(deck.model->mesh_file);
   deck.fingerprint = sha256(rest);
   if (const Node* steps = root.find("steps"))
     for (const auto& step : steps->items) {
@@ -109,12 +116,12 @@ Deck parse_deck(const std::string& bytes, const std::string& name,
   deck.path = name;
   deck.sha256 = sha256(bytes);
   complete(deck, root);
-  take_fingerprints(deck, root);
   const Names names(deck, root);
   check_references(names, reader);
   check_groups(deck, names, root, reader);
   check_model(deck, names, root, reader);
   check_steps(deck, names, root, reader);
+  take_fingerprints(deck, root);
   complaints.throw_if_any();
   return deck;
 }

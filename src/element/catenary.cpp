@@ -12,7 +12,7 @@ namespace {
 
 using detail::CatenaryIntegrals;
 
-/// A cable between two ends in the plane of its chord and its weight.
+/// A cable between two ends in the plane of its chord and its weight, other loads along it included.
 struct Plane {
   double length;       ///< unstressed [m]
   double chord;        ///< [m]
@@ -38,7 +38,7 @@ Plane plane_of(const CatenaryProperties& properties, const Vec3& acceleration, c
   const bool closed = chord.length_ref + chord.length == 0;  // a loop from one point, before and after
   c.elongation = (chord.length_ref - c.length) + (closed ? 0 : chord.elongation);
   c.elasticity = 1 / properties.axial_stiffness;
-  c.weight_global = properties.mass_per_length * acceleration;
+  c.weight_global = properties.mass_per_length * acceleration + properties.line_load;
   c.w.size = c.weight_global.norm();
   // Where the ends meet any axis will do; one across the weight is the limit of a closing loop.
   const Vec3 n = chord.length > 0 ? chord.direction

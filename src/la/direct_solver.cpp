@@ -95,6 +95,14 @@ void DirectSolver::set_options() {
 
 bool DirectSolver::factor(const SymmetricMatrix& matrix) {
   const auto start = std::chrono::steady_clock::now();
+  if (options_set_) {  // PETSc makes new factors for another matrix, without the options
+    ::Mat last = nullptr;
+    check(KSPGetOperators(ksp_, &last, nullptr), "KSPGetOperators");
+    if (last != matrix.handle()) {
+      check(KSPReset(ksp_), "KSPReset");
+      options_set_ = false;
+    }
+  }
   check(KSPSetOperators(ksp_, matrix.handle(), matrix.handle()), "KSPSetOperators");
   if (!options_set_) set_options();
   failure_.clear();

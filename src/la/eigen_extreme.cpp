@@ -88,20 +88,13 @@ int count_below(const SymmetricMatrix& a, const SymmetricMatrix& b, double value
   return solver.inertia().negative;
 }
 
-/// How many eigenvalues farther from zero than the last one found are not among those found: the negative
-/// pivots of B - A / s are those beyond s, on the side of s.
-int count_missing(const SymmetricMatrix& a, const SymmetricMatrix& b, const EigenPairs& pairs,
-                  Extreme which) {
-  if (pairs.values.empty()) return 0;
-  double least = std::abs(pairs.values.front());
-  for (const double value : pairs.values) least = std::min(least, std::abs(value));
-  least *= 1 + 1e-8;
-  const auto found = std::count_if(pairs.values.begin(), pairs.values.end(),
-                                   [&](double value) { return std::abs(value) > least; });
+/// How many eigenvalues are farther from zero than `place`: the negative pivots of B - A / s are those beyond
+/// s, on the side of s.
+int count_beyond(const SymmetricMatrix& a, const SymmetricMatrix& b, double place, Extreme which) {
   int all = 0;
-  if (which != Extreme::highest) all += count_below(a, b, -least);
-  if (which != Extreme::lowest) all += count_below(a, b, least);
-  return all - static_cast<int>(found);
+  if (which != Extreme::highest) all += count_below(a, b, -place);
+  if (which != Extreme::lowest) all += count_below(a, b, place);
+  return all;
 }
 
 void sort_and_cut(EigenPairs& pairs, int count) {
@@ -123,14 +116,19 @@ void sort_and_cut(EigenPairs& pairs, int count) {
 }  // namespace
 
 EigenPairs solve_extreme(const SymmetricMatrix& a, const SymmetricMatrix& b, int count, Extreme which) {
-  constexpr int most_rounds = 8;
+  constexpr int most_rounds = 12, spare = 2;
   EigenPairs pairs;
-  find_more(a, b, count, which, pairs);
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0, more = count + spare; round < most_rounds; ++round) {
+    find_more(a, b, more, which, pairs);
+    sort_and_cut(pairs, count + most_rounds * (count + spare));
+    if (pairs.values.empty()) return pairs;
+    std::vector<double> sizes;
+    for (const double value : pairs.values) sizes.push_back(std::abs(value));
+    const Gap gap = gap_behind(sizes, count);
+    more = count_beyond(a, b, gap.place, which) - gap.before;
+    if (more > 0) continue;
     sort_and_cut(pairs, count);
-    const int missing = count_missing(a, b, pairs, which);
-    if (missing <= 0) return pairs;
-    find_more(a, b, missing, which, pairs);
+    return pairs;
   }
   throw LibraryError(
       "SLEPc did not find every mode of a cluster of equal factors: ask for more or fewer modes");

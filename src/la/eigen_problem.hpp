@@ -4,7 +4,9 @@
 
 #include <slepceps.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <tautline/la/symmetric_matrix.hpp>
 
@@ -44,7 +46,10 @@ inline void set_start(::EPS eps, const SymmetricMatrix& stiffness) {
 inline void set_problem(::EPS eps, const SymmetricMatrix& a, const SymmetricMatrix& b, int count) {
   check(EPSSetOperators(eps, a.handle(), b.handle()), "EPSSetOperators");
   check(EPSSetProblemType(eps, EPS_GHEP), "EPSSetProblemType");
-  check(EPSSetDimensions(eps, count, PETSC_DEFAULT, PETSC_DEFAULT), "EPSSetDimensions");
+  PetscInt size = 0;
+  check(MatGetSize(a.handle(), &size, nullptr), "MatGetSize");
+  check(EPSSetDimensions(eps, std::min<PetscInt>(count, size), PETSC_DEFAULT, PETSC_DEFAULT),
+        "EPSSetDimensions");
   check(EPSSetTolerances(eps, 1e-12, 500), "EPSSetTolerances");
   ::ST transform = nullptr;
   ::KSP ksp = nullptr;
@@ -57,6 +62,27 @@ inline void set_problem(::EPS eps, const SymmetricMatrix& a, const SymmetricMatr
   check(PCSetType(pc, PCCHOLESKY), "PCSetType");
   check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS), "PCFactorSetMatSolverType");
   set_start(eps, a);
+}
+
+/// A place between two values, and how many are before it.
+struct Gap {
+  int before = 0;
+  double place = 0;
+};
+
+/// @brief The first gap behind at least `count` of some values in order, so that what is before it can be
+/// counted whatever the last digits of those at the cut.
+///
+/// Without a gap, a place a little behind the last value.
+inline Gap gap_behind(const std::vector<double>& values, int count) {
+  constexpr double wide = 1e-5;
+  const auto n = static_cast<int>(values.size());
+  for (int i = count; i < n; ++i) {
+    const double a = values[static_cast<std::size_t>(i - 1)], b = values[static_cast<std::size_t>(i)];
+    if (std::abs(b - a) > wide * std::max(std::abs(a), std::abs(b))) return {i, (a + b) / 2};
+  }
+  const double first = values.front(), last = values.back();
+  return {n, last + (last < first ? -wide : wide) * last};
 }
 
 }  // namespace tautline::la

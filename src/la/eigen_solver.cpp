@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <numeric>
 #include <tautline/core/error.hpp>
 #include <tautline/la/direct_solver.hpp>
@@ -27,34 +29,34 @@ void configure(::EPS eps, const SymmetricMatrix& stiffness, const SymmetricMatri
   check(STSetType(transform, STSINVERT), "STSetType");
 }
 
-/// The `count` pairs nearest to the shift that SLEPc finds outside the space of `known`.
-EigenPairs find_pairs(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count, double shift,
-                      const std::vector<Vector>& known) {
+/// Up to `count` pairs nearest to the shift that SLEPc finds outside the space of those known, put to them.
+void find_more(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count, double shift,
+               EigenPairs& pairs) {
+  constexpr double infinite = 1e-14;  // of the nearest, inverted: no mass moves
   const EigenHandle eps;
   configure(eps.get(), stiffness, mass, count, shift);
   std::vector<::Vec> space;
-  for (const auto& vector : known) space.push_back(vector.handle());
+  for (const auto& vector : pairs.vectors) space.push_back(vector.handle());
   if (!space.empty())
     check(EPSSetDeflationSpace(eps.get(), static_cast<PetscInt>(space.size()), space.data()),
           "EPSSetDeflationSpace");
   check(EPSSolve(eps.get()), "EPSSolve");
   PetscInt converged = 0;
   check(EPSGetConverged(eps.get(), &converged), "EPSGetConverged");
-  if (converged < count)
-    throw LibraryError(fmt::format(
-        "SLEPc found {} of the {} modes asked for: ask for fewer, or check that the structure has mass",
-        static_cast<int>(converged), count));
-  EigenPairs pairs;
-  for (int i = 0; i < count; ++i) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const double value : pairs.values) nearest = std::min(nearest, std::abs(value - shift));
+  for (int i = 0; i < std::min<int>(count, converged); ++i) {
     ::Vec x = nullptr;
     check(MatCreateVecs(stiffness.handle(), &x, nullptr), "MatCreateVecs");
+    Vector vector = Vector::adopt(x);
     PetscScalar value = 0;
     check(EPSGetEigenpair(eps.get(), i, &value, nullptr, x, nullptr), "EPSGetEigenpair");
+    nearest = std::min(nearest, std::abs(value - shift));
+    if (!(nearest > infinite * std::abs(value - shift)) && nearest > 0) continue;
     pairs.values.push_back(value);
-    pairs.vectors.push_back(Vector::adopt(x));
+    pairs.vectors.push_back(std::move(vector));
     pairs.residuals.push_back(0);
   }
-  return pairs;
 }
 
 /// Number of eigenvalues below `value`, up to a constant: the negative pivots of K - value M (Sylvester's
@@ -66,35 +68,17 @@ int count_below(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, d
   return solver.inertia().negative;
 }
 
-/// How many eigenvalues lie nearer to the shift than the farthest one found and are not among those found:
-/// copies of multiple ones, which one Krylov sequence meets by round-off only.
-int count_missing(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, const EigenPairs& pairs,
-                  double shift) {
-  double radius = 0;
-  for (const double value : pairs.values) radius = std::max(radius, std::abs(value - shift));
-  radius *= 1 - 1e-8;
-  if (radius == 0) return 0;
-  const auto found = std::count_if(pairs.values.begin(), pairs.values.end(),
-                                   [&](double value) { return std::abs(value - shift) < radius; });
-  return count_below(stiffness, mass, shift + radius) - count_below(stiffness, mass, shift - radius) -
-         static_cast<int>(found);
+int count_within(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, double shift, double radius) {
+  return count_below(stiffness, mass, shift + radius) - count_below(stiffness, mass, shift - radius);
 }
 
-/// Puts `more` to `pairs` and keeps the `count` nearest to the shift, smallest first.
-void merge(EigenPairs& pairs, EigenPairs more, int count, double shift) {
-  for (std::size_t i = 0; i < more.values.size(); ++i) {
-    pairs.values.push_back(more.values[i]);
-    pairs.vectors.push_back(std::move(more.vectors[i]));
-    pairs.residuals.push_back(more.residuals[i]);
-  }
+/// Puts pairs in this order and keeps the first `count`.
+void arrange(EigenPairs& pairs, int count, const std::function<bool(double, double)>& before) {
   std::vector<std::size_t> order(pairs.values.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::abs(pairs.values[a] - shift) < std::abs(pairs.values[b] - shift);
-  });
-  order.resize(static_cast<std::size_t>(count));
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return pairs.values[a] < pairs.values[b]; });
+                   [&](std::size_t a, std::size_t b) { return before(pairs.values[a], pairs.values[b]); });
+  order.resize(std::min(order.size(), static_cast<std::size_t>(count)));
   EigenPairs kept;
   for (const std::size_t i : order) {
     kept.values.push_back(pairs.values[i]);
@@ -104,20 +88,40 @@ void merge(EigenPairs& pairs, EigenPairs more, int count, double shift) {
   pairs = std::move(kept);
 }
 
+[[noreturn]] void too_few(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count,
+                          double shift, const EigenPairs& pairs) {
+  constexpr double far = 1e6;
+  const auto found = static_cast<int>(pairs.values.size());
+  const auto sentence = fmt::format("SLEPc found {} of the {} modes asked for", found, count);
+  if (found == 0) throw LibraryError(sentence + ": check that the structure has mass");
+  const double radius = far * std::abs(pairs.values.back() - shift);
+  if (count_within(stiffness, mass, shift, radius) > found) throw LibraryError(sentence + ": ask for fewer");
+  throw ModelError(
+      fmt::format("only {} of the {} modes asked for exist: no more unknowns have a mass of their own. Ask "
+                  "for at most {}",
+                  found, count, found));
+}
+
 }  // namespace
 
 EigenPairs solve_vibration(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count,
                            double shift) {
-  constexpr int most_rounds = 8;
+  constexpr int most_rounds = 12, spare = 2;
   EigenPairs pairs;
-  merge(pairs, find_pairs(stiffness, mass, count, shift, {}), count, shift);
-  for (int round = 0; round < most_rounds; ++round) {
-    const int missing = count_missing(stiffness, mass, pairs, shift);
-    if (missing <= 0) {
-      refine(stiffness, mass, shift, pairs);
-      return pairs;
-    }
-    merge(pairs, find_pairs(stiffness, mass, missing, shift, pairs.vectors), count, shift);
+  for (int round = 0, more = count + spare; round < most_rounds; ++round) {
+    find_more(stiffness, mass, more, shift, pairs);
+    arrange(pairs, count + most_rounds * (count + spare),
+            [&](double a, double b) { return std::abs(a - shift) < std::abs(b - shift); });
+    if (static_cast<int>(pairs.values.size()) < count) too_few(stiffness, mass, count, shift, pairs);
+    std::vector<double> distances;
+    for (const double value : pairs.values) distances.push_back(std::abs(value - shift));
+    const Gap gap = gap_behind(distances, count);
+    more = count_within(stiffness, mass, shift, gap.place) - gap.before;
+    if (more > 0) continue;
+    arrange(pairs, count, [&](double a, double b) { return std::abs(a - shift) < std::abs(b - shift); });
+    arrange(pairs, count, std::less<>());
+    refine(stiffness, mass, shift, pairs);
+    return pairs;
   }
   throw LibraryError(
       "SLEPc did not find every mode of a cluster of equal frequencies: ask for more or fewer modes");

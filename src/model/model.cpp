@@ -17,7 +17,8 @@ void append_nodes(const Elements& elements, const std::vector<int>& indices, std
   for (const int i : indices) nodes.insert(nodes.end(), elements[i].nodes.begin(), elements[i].nodes.end());
 }
 
-void sort_unique(std::vector<int>& values) {
+template <class Value>
+void sort_unique(std::vector<Value>& values) {
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
@@ -41,6 +42,14 @@ double length(const Model& model, const std::array<int, 2>& nodes) {
 }
 
 }  // namespace
+
+std::string prefix(const SourceLocation& where) {
+  return where.line > 0 ? fmt::format("{}:{}:{}: ", where.file, where.line, where.column) : "";
+}
+
+std::string Load::title() const {
+  return fmt::format("{}load \"{}\"", prefix(where), name);
+}
 
 Load scaled(const Load& load, double factor) {
   Load result = load;
@@ -99,6 +108,26 @@ Selection Model::select(const std::string& name) const {
   return result;
 }
 
+Selection Model::select(const std::vector<std::string>& wanted) const {
+  Selection result;
+  for (const auto& name : wanted) {
+    const Selection more = select(name);
+    const auto append = [&](auto member) {
+      (result.*member).insert((result.*member).end(), (more.*member).begin(), (more.*member).end());
+    };
+    for (const auto member : {&Selection::nodes, &Selection::cables, &Selection::beams, &Selection::membranes,
+                              &Selection::shells, &Selection::springs, &Selection::masses})
+      append(member);
+    append(&Selection::edges);
+  }
+  for (auto* list : {&result.nodes, &result.cables, &result.beams, &result.membranes, &result.shells,
+                     &result.springs, &result.masses})
+    sort_unique(*list);
+  for (auto& edge : result.edges) std::sort(edge.begin(), edge.end());
+  sort_unique(result.edges);
+  return result;
+}
+
 std::vector<int> Model::nodes_of(const std::vector<std::string>& wanted) const {
   std::map<int, int> leader;  // of the ends of beams that hang on a node
   for (const auto& link : links)
@@ -143,6 +172,8 @@ std::vector<bool> Model::rotational_nodes() const {
   }
   for (const auto& pair : cyclic_pairs)
     if (result[pair.leader] || result[pair.follower]) result[pair.leader] = result[pair.follower] = true;
+  for (const int i : order)  // what is tied to a node that turns turns with it
+    if (result[links[i].leader] && !links[i].rotation_free) result[links[i].follower] = true;
   return result;
 }
 

@@ -47,11 +47,7 @@ MembraneResult membrane_result(const Model& model, const State& state, const Mem
   const auto result = element::evaluate_membrane<N>(membrane_law<N>(model, membrane),
                                                     reference_nodes<N>(model, membrane.nodes),
                                                     displacements<N>(state, membrane.nodes), Want::force);
-  Vec<2> principal = result.principal_cauchy;
-  const double stiffness = model.groups[membrane.group].membrane.tension_stiffness;
-  for (double& value : principal)  // rounding
-    if (std::abs(value) < std::max(1e-10 * std::abs(principal[0]), 1e-13 * stiffness)) value = 0;
-  return {principal, result.state};
+  return {result.principal_cauchy, result.state};
 }
 
 template <int N>
@@ -99,24 +95,6 @@ GroupSummary start(const Group& group) {
   summary.tension_min = summary.axial_min = summary.principal_min = infinity;
   summary.tension_max = summary.axial_max = summary.principal_max = -infinity;
   return summary;
-}
-
-/// Forces below 1e-12 of the largest in the structure are what rounding leaves of zero, and are reported as
-/// zero.
-void clear_rounding(std::vector<GroupSummary>& summaries) {
-  double largest = 0;
-  const auto each = [](GroupSummary& s, const auto& action) {
-    for (double* force : {&s.tension_min, &s.tension_max, &s.axial_min, &s.axial_max, &s.moment_max})
-      action(*force);
-  };
-  for (auto& summary : summaries)
-    each(summary, [&](double& force) {
-      if (std::isfinite(force)) largest = std::max(largest, std::abs(force));
-    });
-  for (auto& summary : summaries)
-    each(summary, [&](double& force) {
-      if (std::abs(force) < 1e-12 * largest) force = 0;
-    });
 }
 
 void finish(GroupSummary& summary) {
@@ -170,7 +148,8 @@ Vec<2> principal_values(const Vec3& n) {
   return {mean + radius, mean - radius};
 }
 
-std::map<std::string, GroupSummary> summarise_groups(const Model& model, const Response& response) {
+std::map<std::string, GroupSummary> summarise_groups(const Model& model, const State& state,
+                                                     const Response& response) {
   std::vector<GroupSummary> summaries;
   for (const auto& group : model.groups) summaries.push_back(start(group));
   const auto add_all = [&](const auto& elements, const auto& results) {
@@ -191,10 +170,11 @@ std::map<std::string, GroupSummary> summarise_groups(const Model& model, const R
   for (const auto& point : model.masses) ++summaries[point.group].count;
   for (const auto& link : model.links)
     if (link.group >= 0 && model.groups[link.group].kind == ElementKind::link) ++summaries[link.group].count;
-  clear_rounding(summaries);
+  const auto rounding = rounding_by_group(model, state);
   std::map<std::string, GroupSummary> result;
   for (std::size_t i = 0; i < summaries.size(); ++i) {
     finish(summaries[i]);
+    summaries[i].rounding = rounding[i];
     result[model.groups[i].name] = summaries[i];
   }
   return result;

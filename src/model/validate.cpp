@@ -7,6 +7,8 @@
 #include <tautline/core/text.hpp>
 #include <tautline/model/model.hpp>
 
+#include "model/detail/load_faults.hpp"
+
 namespace tautline::model {
 
 namespace {
@@ -19,6 +21,10 @@ class Faults {
   template <class... Args>
   void add(fmt::format_string<Args...> text, Args&&... args) {
     faults_.push_back(fmt::format(text, std::forward<Args>(args)...));
+  }
+
+  void add(std::vector<std::string> more) {
+    faults_.insert(faults_.end(), more.begin(), more.end());
   }
 
   std::string element(const char* kind, std::size_t index, int group) const {
@@ -109,6 +115,23 @@ void check_areas(const Model& model, const Facets& facets, const char* kind, Fau
   }
 }
 
+/// The rotation of a follower is its leader's, or turned against it: no support holds it.
+void check_held_rotations(const Model& model, Faults& faults) {
+  std::vector<bool> turns_with(model.nodes.size(), false);
+  for (const auto& link : model.links)
+    if (!link.rotation_free) turns_with[link.follower] = true;
+  for (const auto& pair : model.cyclic_pairs) turns_with[pair.follower] = true;
+  for (const auto& support : model.supports) {
+    const auto& fixed = support.fixed;
+    const bool moves = !fixed[0] && !fixed[1] && !fixed[2];  // else told already
+    if (!moves || !(fixed[3] || fixed[4] || fixed[5])) continue;
+    for (const int node : support.nodes)
+      if (turns_with[node])
+        faults.add("support \"{}\" holds the rotation of node {}, which turns with another node: support that one",
+                   support.name, node + 1);
+  }
+}
+
 /// A follower follows one leader; the faces of a sector lead by no other link.
 void check_links(const Model& model, Faults& faults) {
   std::vector<int> followed(model.nodes.size(), 0);
@@ -138,6 +161,7 @@ void check_links(const Model& model, Faults& faults) {
             "support \"{}\" holds node {}, which follows another node through a link: support that one",
             support.name, node + 1);
     }
+  check_held_rotations(model, faults);
 }
 
 void check_connection(const Model& model, Faults& faults) {
@@ -175,6 +199,8 @@ void validate(const Model& model) {
   check_areas(model, model.shells, "shell", faults);
   check_links(model, faults);
   check_connection(model, faults);
+  faults.raise();
+  faults.add(detail::load_faults(model));
   faults.raise();
 }
 

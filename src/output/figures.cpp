@@ -52,6 +52,10 @@ std::string text(const Json& value) {
   return value.is_null() || value.is_structured() ? "" : value.dump();
 }
 
+std::string warning_text(const Json& warning) {
+  return fmt::format("{}: {}", text(member(warning, "where")), text(member(warning, "message")));
+}
+
 std::string show(Figure value, const char* unit, double scale, int digits) {
   if (!value || !std::isfinite(*value)) return "-";
   const double scaled = scale * *value, size = std::abs(scaled);

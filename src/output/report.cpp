@@ -86,7 +86,7 @@ std::string heading(const detail::Story& story, const Json& results) {
     html += alarm(fmt::format("<strong>This run is not complete: {}.</strong> {}",
                               escape_markup(story.status), escape_markup(story.reason)));
   for (const auto& warning : detail::member(results, "warnings"))
-    html += alarm("<strong>Warning:</strong> " + escape_markup(detail::text(warning)));
+    html += alarm("<strong>Warning:</strong> " + escape_markup(detail::warning_text(warning)));
   return html + detail::html_cards(story.headline);
 }
 

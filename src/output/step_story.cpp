@@ -80,7 +80,14 @@ std::vector<Fact> surface_facts(const Json& surface) {
 }
 
 std::vector<Fact> step_facts(const Json& step) {
-  return scalar_facts(step, step_quantities);
+  auto facts = scalar_facts(step, step_quantities);
+  const Json& balance = member(step, "balance");
+  if (balance.is_object())
+    facts.emplace_back(
+        "loads and reactions miss each other by",
+        fmt::format("{} of {} (rounding {})", show(member(balance, "force"), "", 1, 2),
+                    show(member(balance, "size"), "N"), show(member(balance, "rounding"), "", 1, 2)));
+  return facts;
 }
 
 Chapter tell_step(const Json& step, double mass) {

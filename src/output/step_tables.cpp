@@ -19,17 +19,11 @@ struct Column {
   const char *name, *label;
   double scale = 1;
   bool joined = false;  ///< in one notation with the column before
-  double floor = 0;     ///< what is smaller is rounding and shown as 0
 };
 
 bool any_has(const Entries& entries, const char* name) {
   return std::any_of(entries.begin(), entries.end(),
                      [&](const Json* entry) { return !member(*entry, name).is_null(); });
-}
-
-Figure value_of(const Json& entry, const Column& column) {
-  const Figure value = number(member(entry, column.name));
-  return value && std::abs(*value) < column.floor ? 0.0 : value;
 }
 
 /// Fills in columns of figures behind the first one.
@@ -41,7 +35,7 @@ void add_columns(Table& table, const Entries& entries, std::span<const Column> c
     for (next = first + 1; next < present.size() && present[next].joined;) ++next;
     std::vector<Figure> values;
     for (std::size_t k = first; k < next; ++k)
-      for (const Json* entry : entries) values.push_back(value_of(*entry, present[k]));
+      for (const Json* entry : entries) values.push_back(number(member(*entry, present[k].name)));
     const auto figures = show_column(values, present[first].scale);
     for (std::size_t k = first; k < next; ++k) {
       table.header.emplace_back(present[k].label);
@@ -104,20 +98,9 @@ Json component(const Json& list, std::size_t index) {
   return values;
 }
 
-/// What is below rounding beside the largest entry as 0.
-Json without_rounding(const Json& list) {
-  double largest = 0;
-  for (const auto& value : list) largest = std::max(largest, std::abs(number(value).value_or(0)));
-  Json result = list;
-  for (auto& value : result)
-    if (std::abs(number(value).value_or(0)) < 1e-12 * largest) value = 0;
-  return result;
-}
-
 }  // namespace
 
 std::vector<Table> group_tables(const Json& groups) {
-  constexpr double rounding = 1e-12;
   std::vector<Table> tables;
   if (!groups.is_object()) return tables;
   static constexpr Column cables[] = {{"count", "count"},
@@ -125,21 +108,27 @@ std::vector<Table> group_tables(const Json& groups) {
                                       {"tension_mean", "mean", 1, true},
                                       {"tension_max", "largest", 1, true},
                                       {"tension_rms_from_target", "RMS from target"},
-                                      {"slack", "slack"}};
+                                      {"slack", "slack"},
+                                      {"rounding", "rounding"}};
   static constexpr Column beams[] = {{"count", "count"},
-                                     {"axial_min", "least axial", 1, false, rounding},
-                                     {"axial_max", "largest axial", 1, true, rounding},
-                                     {"moment_max", "largest moment", 1, false, rounding}};
-  static constexpr Column membranes[] = {
-      {"count", "count"}, {"principal_min", "least"}, {"principal_max", "largest", 1, true}};
+                                     {"axial_min", "least axial"},
+                                     {"axial_max", "largest axial", 1, true},
+                                     {"moment_max", "largest moment"},
+                                     {"rounding", "rounding"}};
+  static constexpr Column membranes[] = {{"count", "count"},
+                                         {"principal_min", "least"},
+                                         {"principal_max", "largest", 1, true},
+                                         {"rounding", "rounding"}};
   add_group_table(tables, groups, "Cables, tension [N]", "tension_max", cables);
   static constexpr Column shells[] = {{"count", "count"},
                                       {"principal_min", "least"},
                                       {"principal_max", "largest", 1, true},
-                                      {"moment_max", "largest moment [N]", 1, false, rounding}};
+                                      {"moment_max", "largest moment [N]"},
+                                      {"rounding", "rounding"}};
   static constexpr Column springs[] = {{"count", "count"},
                                        {"force_max", "largest force"},
-                                       {"moment_max", "largest moment", 1, false, rounding}};
+                                       {"moment_max", "largest moment"},
+                                       {"rounding", "rounding"}};
   const auto those = [&](const char* key, const char* but) {
     Json result = Json::object();
     for (const auto& [name, group] : groups.items())
@@ -232,7 +221,7 @@ Table rod_table(const Json& step) {
   add_list(table, "X [m]", x, 5);
   add_list(table, "Y [m]", from_root(member(root, "Y"), "Y"), 5);
   add_list(table, "theta [rad]", from_root(member(root, "theta"), "theta"), 4);
-  add_list(table, "moment [N m]", without_rounding(member(member(step, "moments"), "II")), 5);
+  add_list(table, "moment [N m]", member(member(step, "moments"), "II"), 5);
   add_list(table, "cable pulls [N]", from_root(Json(), "reaction"), 5);
   add_list(table, "strain [%]", from_root(Json(), "strain", 100), 4);
   add_list(table, "E F [N]", from_root(Json(), "stiffness"), 5);

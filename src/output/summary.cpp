@@ -263,7 +263,7 @@ class Summary {
 
   void ending() {
     for (const auto& warning : member(results_, "warnings"))
-      append(detail::hanging_lines("Warning:", 9, {text(warning)}));
+      append(detail::hanging_lines("Warning:", 9, {detail::warning_text(warning)}));
     if (!directory_.empty())
       append(detail::hanging_lines("Results:", 9, {directory_ + " (report.html, results.json)"}));
     if (story_.status == "done") return;

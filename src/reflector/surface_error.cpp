@@ -160,6 +160,7 @@ SurfaceError measure_surface(const Paraboloid& surface, const SurfaceSample& sam
   const BestFit fit = fit_paraboloid(surface, area);
   e.rms_best_fit = fit.rms;
   e.best_fit_focal_length = fit.focal_length;
+  e.best_fit_converged = fit.converged;
   e.gain_loss_db = gain_loss(e.rms, e.frequency);
   e.gain_loss_half_path_db = gain_loss(e.rms_half_path, e.frequency);
   return e;

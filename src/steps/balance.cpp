@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
 
-#include <tautline/model/state.hpp>
+#include <fmt/format.h>
 
-#include "steps/summaries.hpp"
+#include <tautline/model/state.hpp>
 
 namespace tautline::steps {
 
@@ -19,43 +18,29 @@ Json triple(const Vec3& v) {
   return {v[0], v[1], v[2]};
 }
 
-Json vector_on_grid(const Vec3& v, double size) {
-  return {on_grid(v[0], size), on_grid(v[1], size), on_grid(v[2], size)};
-}
-
-/// Force of a support and moment about its centre, with the sums of magnitudes whose rounding they carry.
+/// Force of a support and moment about its centre.
 struct Reaction {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-  double force_size = 0, moment_size = 0;
 
   void add(const Vec3& lever, const Vec3& f, const Vec3& m) {
     force += f;
     moment += lever.cross(f) + m;
-    force_size += f.norm();
-    moment_size += m.norm() + lever.norm() * f.norm();
   }
-  /// Rounding of the larger reactions elsewhere, or of the stiffest elements, is nothing of its own.
-  Json json(double largest_force, double largest_moment, double rounding, double reach) const {
-    const auto shown = [](const Vec3& v, double size, double largest, double noise) {
-      const bool real = size > 1e-12 * largest && v.norm() > noise;
-      return real ? vector_on_grid(v, size) : triple(Vec3::Zero());
-    };
-    return {{"force", shown(force, force_size, largest_force, rounding)},
-            {"moment", shown(moment, moment_size, largest_moment, rounding * reach)}};
-  }
+  Json json() const { return {{"force", triple(force)}, {"moment", triple(moment)}}; }
 };
 
-/// Sums of force and of moment about the origin.
+/// Sum of force and of moment about the origin, with the sums of magnitudes.
 struct Resultant {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-  double size = 0, moment_size = 0;  ///< sums of magnitudes
+  double forces = 0, moments = 0;
 
-  void add(const Vec3& at, const Vec3& f, const Vec3& m) {
-    const Vec3 turn = at.cross(f) + m;
-    force += f;
-    moment += turn;
-    size += f.norm();
-    moment_size += turn.norm();
+  void add(const Points& at, const assembly::System::NodalForces& nodal) {
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      force += nodal.force[i];
+      moment += at[i].cross(nodal.force[i]) + nodal.moment[i];
+      forces += nodal.force[i].norm();
+      moments += nodal.moment[i].norm();
+    }
   }
 };
 
@@ -83,9 +68,6 @@ class Claims {
 
 Json monitors_json(const assembly::System& system, const std::vector<std::string>& names) {
   Json result = Json::object();
-  double farthest = 0, most = 0;
-  for (const auto& u : system.state().displacement) farthest = std::max(farthest, u.norm());
-  for (const auto& r : system.state().rotation) most = std::max(most, Eigen::AngleAxisd(r).angle());
   for (const auto& name : names) {
     const auto nodes = system.model().nodes_of({name});
     Vec3 u = Vec3::Zero(), r = Vec3::Zero();
@@ -94,7 +76,7 @@ Json monitors_json(const assembly::System& system, const std::vector<std::string
       u += system.state().displacement[node] / static_cast<double>(nodes.size());
       r += turn.angle() * turn.axis() / static_cast<double>(nodes.size());
     }
-    result[name] = {{"displacement", vector_on_grid(u, farthest)}, {"rotation", vector_on_grid(r, most)}};
+    result[name] = {{"displacement", triple(u)}, {"rotation", triple(r)}};
   }
   return result;
 }
@@ -131,39 +113,44 @@ Json reactions_json(const assembly::System& system, const assembly::Boundary& bo
     for (const int node : nodes) sum.add(positions[node] - centre, ground.force[node], ground.moment[node]);
     list.emplace_back(name, sum);
   }
-  double force = 0, moment = 0;
-  for (const auto& [name, sum] : list) {
-    force = std::max(force, sum.force_size);
-    moment = std::max(moment, sum.moment_size);
-  }
   Json result = Json::object();
-  for (const auto& [name, sum] : list)
-    result[name] = sum.json(force, std::max(moment, force * system.size()), system.rounding_force_of_lines(),
-                            system.size());
+  for (const auto& [name, sum] : list) result[name] = sum.json();
   return result;
 }
 
-Json balance_json(const assembly::System& system, const assembly::System::NodalForces& reactions) {
-  const auto& model = system.model();
-  if (!model.constraints.empty() || !model.cyclic_pairs.empty()) return nullptr;
-  const auto applied = system.applied(), springs = system.ground_springs();
-  const auto positions = model::positions(model, system.state());
-  Resultant all, loads;
+Json balance_json(const assembly::System& system) {
+  const auto applied = system.applied();
+  const auto positions = model::positions(system.model(), system.state());
+  Resultant loads, all;
+  loads.add(positions, applied);
+  all.add(positions, applied);
+  all.add(positions, system.reactions());
+  all.add(positions, system.ground_springs());
+  all.add(positions, system.constraint_forces());
   double reach = 0;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    all.add(positions[i], reactions.force[i], reactions.moment[i]);
-    all.add(positions[i], springs.force[i], springs.moment[i]);
-    all.add(positions[i], applied.force[i], applied.moment[i]);
-    loads.add(positions[i], applied.force[i], applied.moment[i]);
-    reach = std::max(reach, positions[i].norm());
-  }
-  const double rounding = system.rounding_force();
-  const auto part = [](double value, double of, double floor) {
-    return above_rounding(value > floor ? value / of : 0, 1e-9);
-  };
+  for (const auto& position : positions) reach = std::max(reach, position.norm());
+  if (!(reach > 0)) reach = 1;
+  const auto rounding = system.rounding();
+  const double size = all.forces + all.moments / reach;
+  const auto part = [size](double value) { return size > 0 ? value / size : 0; };
   return {{"applied_force", triple(loads.force)},
-          {"force", part(all.force.norm(), all.size + all.moment_size / reach, rounding)},
-          {"moment", part(all.moment.norm(), all.moment_size + all.size * reach, rounding * reach)}};
+          {"size", size},
+          {"force", part(all.force.norm())},
+          {"moment", part(all.moment.norm() / reach)},
+          {"rounding", part(rounding.force + rounding.moment / reach)}};
+}
+
+std::string imbalance(const Json& balance) {
+  constexpr double most = 1e-6, times_rounding = 10;
+  const double force = balance["force"], moment = balance["moment"], rounding = balance["rounding"];
+  const double miss = std::max(force, moment);
+  if (miss <= std::max(most, times_rounding * rounding)) return {};
+  return fmt::format(
+      "loads and reactions miss each other by {:.2e} of the {} of {:.4g} N that they sum up to, which is "
+      "more "
+      "than {:g} and more than {:g} times the rounding level {:.1e}",
+      miss, moment > force ? "moment" : "force", balance["size"].get<double>(), most, times_rounding,
+      rounding);
 }
 
 }  // namespace tautline::steps

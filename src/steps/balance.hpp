@@ -21,9 +21,12 @@ Json monitors_json(const assembly::System& system, const std::vector<std::string
 Json reactions_json(const assembly::System& system, const assembly::Boundary& boundary,
                     const assembly::System::NodalForces& reactions);
 
-/// Loads and reactions together, over the sum of their magnitudes: zero in equilibrium, as is what the
-/// rounding of the stiffest elements leaves. Null where linear constraints or cyclic pairs carry forces of
-/// their own.
-Json balance_json(const assembly::System& system, const assembly::System::NodalForces& reactions);
+/// Loads, reactions and what constraints carry summed up: force, moment about the origin over the farthest
+/// node's distance, and what rounding may leave of both, all three over `size`, the sum of the magnitudes.
+/// Collective.
+Json balance_json(const assembly::System& system);
+
+/// Why a balance is none, with both sides of the inequality; empty if it is one.
+std::string imbalance(const Json& balance);
 
 }  // namespace tautline::steps

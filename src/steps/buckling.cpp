@@ -12,8 +12,6 @@ namespace tautline::steps {
 
 namespace {
 
-constexpr int certain_digits = 7;  // what the difference of two tangents leaves
-
 Json failed(const std::string& reason) {
   return {{"status", "not_converged"}, {"reason", reason}};
 }
@@ -49,11 +47,13 @@ Json run_step(Context& context, const BucklingOptions& options) {
   const double reference = reference_load(context, loads);
   if (reference > 0) entry["critical_loads"] = Json::array();
   for (std::size_t i = 0; i < found.factors.size(); ++i) {
-    entry["factors"].push_back(to_digits(found.factors[i], certain_digits));
-    entry["residuals"].push_back(rounded(above_rounding(found.residuals[i], 1e-8)));
-    if (reference > 0)
-      entry["critical_loads"].push_back(to_digits(found.factors[i] * reference, certain_digits));
+    entry["factors"].push_back(found.factors[i]);
+    entry["residuals"].push_back(found.residuals[i]);
+    if (reference > 0) entry["critical_loads"].push_back(found.factors[i] * reference);
   }
+  for (const auto& [sign, groups] : found.slack)
+    if (!groups.empty()) entry["slack_at_first_factor"][sign] = groups;
+  for (const auto& doubt : found.doubts) context.warn(doubt.code, doubt.message);
   show_modes(context, found);
   return entry;
 }

@@ -116,9 +116,10 @@ void add_inline(model::Model& model, const model::ModelOptions& options, const d
     for (const auto& [a, b] : group.edges) add_edge(model.selections[name], {index.at(a), index.at(b)});
   }
   for (const auto& constraint : options.constraints) {
-    auto& terms = model.constraints.emplace_back().terms;
+    auto& made = model.constraints.emplace_back();
+    made.where = constraint.where;
     for (const auto& term : constraint.terms)
-      terms.push_back({index.at(term.node), term.component, term.coefficient});
+      made.terms.push_back({index.at(term.node), term.component, term.coefficient});
   }
 }
 
@@ -179,8 +180,8 @@ void check_sections(const model::Model& model, const deck::Deck& deck) {
     model::for_each_kind(model, [&](const auto& elements) { used = used || in(elements); });
     if (!options.section.empty() && !used)
       throw ModelError(fmt::format(
-          "{}:{}:{}: group \"{}\" has a section but no elements: the structure has none of that name",
-          options.where.file, options.where.line, options.where.column, name));
+          "{}group \"{}\" has a section but no elements: the structure has none of that name",
+          model::prefix(options.where), name));
   }
 }
 
@@ -259,9 +260,9 @@ void add_cyclic(model::Model& model, const model::CyclicOptions& options) {
     });
     if (found == leaders.end())
       throw ModelError(
-          fmt::format("{}:{}:{}: node {} of \"to\" has no partner among the nodes of \"from\" turned "
+          fmt::format("{}node {} of \"to\" has no partner among the nodes of \"from\" turned "
                       "by {} degrees: it would be at ({:g}, {:g}, {:g})",
-                      options.where.file, options.where.line, options.where.column, follower + 1,
+                      model::prefix(options.where), follower + 1,
                       options.angle, wanted.x(), wanted.y(), wanted.z()));
     if (*found != follower) model.cyclic_pairs.push_back({*found, follower, turn});
   }
@@ -273,16 +274,15 @@ std::vector<int> look_up(const model::Model& model, const std::vector<std::strin
   try {
     return model.nodes_of(names);
   } catch (const ModelError& error) {
-    throw ModelError(fmt::format("{}:{}:{}: {}", where.file, where.line, where.column, error.what()));
+    throw ModelError(model::prefix(where) + error.what());
   }
 }
 
 /// A load on elements needs elements that it can act on.
 void check_load_place(const model::Model& model, const model::LoadOptions& options) {
   const auto refuse = [&](const std::string& name, const char* key, const char* needs) {
-    throw ModelError(fmt::format("{}:{}:{}: load \"{}\": \"{}\" has no {}, on which {} acts",
-                                 options.where.file, options.where.line, options.where.column, options.name,
-                                 name, needs, key));
+    throw ModelError(fmt::format("{}load \"{}\": \"{}\" has no {}, on which {} acts",
+                                 model::prefix(options.where), options.name, name, needs, key));
   };
   for (const auto& name : options.on) {
     const auto selected = model.select(name);
@@ -314,9 +314,8 @@ std::function<double(const Vec3&)> temperature_field(const model::Model& model,
     const Vec3& x = model.nodes[node];
     if (!std::isfinite(field(x)))
       throw ModelError(fmt::format(
-          "{}:{}:{}: load \"{}\": temperature_field \"{}\" has no value at ({:.4g}, {:.4g}, {:.4g})",
-          options.where.file, options.where.line, options.where.column, options.name,
-          options.temperature_field, x.x(), x.y(), x.z()));
+          "{}load \"{}\": temperature_field \"{}\" has no value at ({:.4g}, {:.4g}, {:.4g})",
+          model::prefix(options.where), options.name, options.temperature_field, x.x(), x.y(), x.z()));
   }
   return field;
 }
@@ -325,6 +324,7 @@ model::Load make_load(const model::Model& model, const model::LoadOptions& optio
   model::Load load;
   load.name = options.name;
   load.on = options.on;
+  load.where = options.where;
   if (options.nodal()) load.nodes = look_up(model, options.on, options.where);
   look_up(model, options.on, options.where);
   check_load_place(model, options);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
+#include <tautline/core/sha256.hpp>
 #include <tautline/la/session.hpp>
 
 namespace tautline::steps {
@@ -19,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* format_name = "tautline-checkpoint";
-constexpr int format_version = 2;
+constexpr int format_version = 3;
 constexpr const char* point_file = "point.bin";
 
 double now_seconds() {
@@ -121,9 +122,7 @@ StagePoint point_of(const Json& json) {
 
 Json to_json(const Checkpoint& checkpoint, const deck::Deck& deck) {
   const std::size_t fixed = static_cast<std::size_t>(checkpoint.steps_done) + (checkpoint.point ? 1 : 0);
-  Json json{{"format", format_name},
-            {"version", format_version},
-            {"structure", deck.fingerprint},
+  Json json{{"structure", deck.fingerprint},
             {"steps", std::vector<std::string>(deck.step_fingerprints.begin(),
                                                deck.step_fingerprints.begin() + static_cast<long>(fixed))},
             {"steps_done", checkpoint.steps_done},
@@ -142,15 +141,48 @@ Checkpoint checkpoint_of(const Json& json) {
   return checkpoint;
 }
 
-Json read(const fs::path& path) {
+/// Nothing of a file that is not what a run wrote is used.
+[[noreturn]] void refuse(const fs::path& path, const std::string& why) {
+  throw LibraryError(fmt::format(
+      "the checkpoint {} {}: run without --from, or take that file away to go on from the others beside it",
+      path.string(), why));
+}
+
+/// Head, then the checksum of the rest, then the rest.
+std::string sealed(const std::string& content) {
+  return fmt::format("{} {}\n{}\n{}", format_name, format_version, sha256(content), content);
+}
+
+std::string unsealed(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  Json json = Json::from_cbor(bytes, true, false);
-  if (json.is_discarded() || json.value("format", "") != format_name ||
-      json.value("version", 0) != format_version)
-    throw LibraryError(
-        fmt::format("{} is no checkpoint of this version of the program: run without --from", path.string()));
+  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::string head = fmt::format("{} {}\n", format_name, format_version);
+  constexpr std::size_t digest = 64;
+  if (!bytes.starts_with(format_name)) refuse(path, "is damaged, or none");
+  if (!bytes.starts_with(head)) refuse(path, "is damaged, or of another version of the program");
+  const std::string content = bytes.substr(std::min(bytes.size(), head.size() + digest + 1));
+  if (bytes != sealed(content)) refuse(path, "is damaged: its checksum does not fit its content");
+  return content;
+}
+
+Json read(const fs::path& path) {
+  Json json = Json::from_cbor(unsealed(path), true, false);
+  if (json.is_discarded()) refuse(path, "cannot be read");
   return json;
+}
+
+std::vector<std::size_t> sizes_of(const model::State& state) {
+  return {state.displacement.size(), state.rotation.size(), state.hinge_angle.size()};
+}
+
+/// Of every list.
+std::vector<std::size_t> sizes_of(const assembly::Rest& rest) {
+  const auto& a = rest.acting;
+  auto sizes = sizes_of(rest.state);
+  sizes.insert(sizes.end(), {a.force.size(), a.moment.size(), a.line.size(), a.pressure.size(),
+                             a.temperature.size(), a.temperature_gradient.size(), a.strain.size(),
+                             rest.turned.size(), rest.stiffness_factor.size()});
+  return sizes;
 }
 
 /// Whether the first steps of the deck are those of the checkpoint.
@@ -164,15 +196,6 @@ std::string step_file(int steps_done) {
   return fmt::format("step_{}.bin", steps_done);
 }
 
-[[noreturn]] void refuse(const deck::Deck& deck, const std::string& directory) {
-  Diagnostic diagnostic;
-  diagnostic.where.file = deck.path;
-  diagnostic.message = fmt::format("the checkpoints in {} belong to another structure", directory);
-  diagnostic.expectation = "expected a deck that differs in its steps, title, solver and output only";
-  diagnostic.suggestion = "run without --from";
-  throw DeckError({diagnostic});
-}
-
 }  // namespace
 
 Checkpoints::Checkpoints(const deck::Deck& deck, std::string directory)
@@ -183,9 +206,11 @@ void Checkpoints::write(const Checkpoint& checkpoint, const std::string& name) {
     fs::create_directories(directory_);
     const fs::path path = fs::path(directory_) / name, fresh = path.string() + ".tmp";
     {
-      const auto bytes = Json::to_cbor(to_json(checkpoint, deck_));
+      std::string content;
+      Json::to_cbor(to_json(checkpoint, deck_), content);
+      const std::string bytes = sealed(content);
       std::ofstream file(fresh, std::ios::binary);
-      file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+      file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
       if (!file.flush()) throw LibraryError(fmt::format("cannot write {}", fresh.string()));
     }
     fs::rename(fresh, path);
@@ -212,6 +237,18 @@ void Checkpoints::save_point(const Checkpoint& checkpoint, bool always) {
   next_ = start + 20 * seconds;
 }
 
+void require_fit(const Checkpoint& checkpoint, const assembly::Rest& wanted, const std::string& from) {
+  const auto sizes = sizes_of(wanted);
+  const auto& point = checkpoint.point;
+  if ((!checkpoint.rest || sizes_of(*checkpoint.rest) == sizes) &&
+      (!point || (sizes_of(point->start) == sizes && sizes_of(point->place.state) == sizes_of(wanted.state))))
+    return;
+  throw LibraryError(
+      fmt::format("the checkpoints in {} hold a state of another mesh than the one that form-finding and "
+                  "meshing have made now: run without --from",
+                  from));
+}
+
 std::optional<Checkpoint> find_checkpoint(const deck::Deck& deck, const std::string& directory) {
   const fs::path folder = fs::path(directory) / "checkpoints";
   if (!fs::is_directory(folder))
@@ -221,20 +258,19 @@ std::optional<Checkpoint> find_checkpoint(const deck::Deck& deck, const std::str
                     directory));
   std::vector<std::string> names{point_file};
   for (int k = static_cast<int>(deck.steps.size()); k > 0; --k) names.push_back(step_file(k));
-  bool any = false, same = false;
   std::optional<Checkpoint> best;
   for (const auto& name : names) {
     if (!fs::exists(folder / name)) continue;
     const Json json = read(folder / name);
-    any = true;
-    if (json["structure"] != deck.fingerprint) continue;
-    same = true;
+    if (json["structure"] != deck.fingerprint)
+      refuse(folder / name, fmt::format("belongs to another structure than {} (or its mesh file has changed; "
+                                        "only steps, title, solver and output may differ)",
+                                        deck.path));
     if (!fits(json, deck)) continue;
     auto checkpoint = checkpoint_of(json);
     const bool farther = !best || checkpoint.steps_done > best->steps_done;
     if (farther) best = std::move(checkpoint);
   }
-  if (any && !same) refuse(deck, directory);
   return best;
 }
 

@@ -28,10 +28,10 @@ struct StagePoint {
 /// What a checkpoint holds.
 struct Checkpoint {
   int steps_done = 0;
-  Json results = {{"steps", Json::array()}};  ///< results.json as far as it goes
-  std::vector<std::string> acting_loads;      ///< as Context's
-  std::optional<assembly::Rest> rest;         ///< of the system after the steps done, if there is one
-  std::optional<StagePoint> point;            ///< within the step that comes next
+  Json results = {{"steps", Json::array()}, {"warnings", Json::array()}};  ///< results.json as far as it goes
+  std::vector<std::string> acting_loads;                                   ///< as Context's
+  std::optional<assembly::Rest> rest;  ///< of the system after the steps done, if there is one
+  std::optional<StagePoint> point;     ///< within the step that comes next
 };
 
 /// Writes checkpoints into a directory of their own: one for each step done, and the latest point of a path.
@@ -60,7 +60,10 @@ class Checkpoints {
 
 /// @brief The checkpoint in a directory of results that goes farthest along the steps of this deck, or
 /// nothing if not even the first step is the same. Read by every rank.
-/// @throws DeckError if the checkpoints belong to another structure, LibraryError if there are none
+/// @throws LibraryError if there are none, or one is damaged or belongs to another structure
 std::optional<Checkpoint> find_checkpoint(const deck::Deck& deck, const std::string& directory);
+
+/// @throws LibraryError unless every list of the checkpoint has as many entries as `wanted`, of the mesh as made
+void require_fit(const Checkpoint& checkpoint, const assembly::Rest& wanted, const std::string& from);
 
 }  // namespace tautline::steps

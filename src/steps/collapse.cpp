@@ -16,8 +16,6 @@ namespace tautline::steps {
 
 namespace {
 
-constexpr int certain_digits = 7;
-
 /// Mean of a nodal field over some nodes.
 Vec3 mean_of(const Points& field, const std::vector<int>& nodes) {
   Vec3 mean = Vec3::Zero();
@@ -226,7 +224,7 @@ Json follow_undisturbed(Context& context, const CollapseOptions& options,
   for (const auto& met : path.critical) {
     critical.push_back(critical_point_json(system, met, options.monitor));
     auto& point = critical.back();
-    point["lambda"] = to_digits(point["lambda"].get<double>() * linear, certain_digits);
+    point["lambda"] = point["lambda"].get<double>() * linear;
     const bool limit = point["kind"] == "limit";
     entry[limit ? "limit_lambda" : "bifurcation_lambda"] = point["lambda"];
   }
@@ -265,8 +263,9 @@ Json run_step(Context& context, const CollapseOptions& options) {
     const int modes = amplitude != 0 ? mode : 1;
     const auto found = linear_buckling(context, loads, modes, BucklingOptions::Sign::positive);
     if (!found.failure.empty()) return fail(found.failure);
+    for (const auto& doubt : found.doubts) context.warn(doubt.code, doubt.message);
     if (static_cast<int>(found.factors.size()) < modes) return fail(too_few_modes(found, options));
-    if (!options.linear_factor) linear = to_digits(found.factors.front(), certain_digits);
+    if (!options.linear_factor) linear = found.factors.front();
     if (amplitude != 0) {
       shape = display_shape(context.system(), found.modes[static_cast<std::size_t>(mode - 1)]);
       for (Vec3& v : shape) v *= amplitude;

@@ -37,6 +37,8 @@ Context::Context(const deck::Deck& the_deck, std::string directory, bool picture
       pictures_(pictures),
       root_(la::rank() == 0),
       fields_(directory_, la::rank(), la::size()) {
+  output::FileNames names;
+  for (const auto& step : deck.steps) step_file_[step.name] = names.of(step.name);
   if (deck.rod_umbrella() != nullptr) {
     umbrella = rod::make_umbrella(*deck.rod_umbrella());
     why_none_ = "the rod-umbrella has no cables yet: a rod_shaping step finds them";
@@ -82,7 +84,7 @@ void Context::set_system(model::Model mesh) {
 }
 
 bool Context::is_lost(const assembly::OutOfBalance& start) const {
-  return !equilibrium_known && start.before > system_->rounding_force() && start.before >= start.force / 2;
+  return !equilibrium_known && start.before >= start.force / 2 && start.before > system_->rounding().force;
 }
 
 void Context::note_model() {
@@ -99,11 +101,17 @@ void Context::save() {
   la::on_root([&] { output::write_results(path("results.json"), results); });
 }
 
+void Context::warn(const std::string& code, const std::string& message, const std::string& where) {
+  const std::string place = where.empty() ? fmt::format("step \"{}\"", step_name) : where;
+  results["warnings"].push_back({{"code", code}, {"message", message}, {"where", place}});
+  progress.say(fmt::format("warning: {}: {}", place, message));
+}
+
 template <class Picture>
 void Context::draw_any(const std::string& name, const std::string& caption, const Picture& picture) {
   if (!pictures_ || !root_) return;
   const Stopwatch watch(output_seconds_);
-  const std::string file = fmt::format("pictures/{}_{}.png", step_name, name);
+  const std::string file = fmt::format("pictures/{}_{}.png", step_file_.at(step_name), name);
   Picture sized = picture;
   const double scale = deck.output.picture_width / double{output::OutputOptions{}.picture_width};
   sized.width = static_cast<int>(std::lround(scale * picture.width));
@@ -113,8 +121,7 @@ void Context::draw_any(const std::string& name, const std::string& caption, cons
     output::draw(sized, path(file));
     results["pictures"].push_back({{"file", file}, {"caption", caption}, {"step", step_name}});
   } catch (const LibraryError& error) {
-    progress.say(fmt::format("warning: no pictures: {}", error.what()));
-    results["warnings"].push_back(error.what());
+    warn("no_pictures", error.what());
     pictures_ = false;
   }
 }

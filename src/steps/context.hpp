@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -66,8 +67,13 @@ class Context {
 
   /// DIR/name
   std::string path(const std::string& name) const { return directory_ + "/" + name; }
+  /// DIR/<step><ending>, with a file name made of the name of the step in hand
+  std::string step_path(const std::string& ending) const { return path(step_file_.at(step_name) + ending); }
   /// Writes results.json (rank 0).
   void save();
+  /// Notes in results.json what the user must not overlook, and tells it: `code` for programs, `where` the
+  /// step in hand or what is named. Told alike by every rank.
+  void warn(const std::string& code, const std::string& message, const std::string& where = {});
   /// Draws DIR/pictures/<step>_<name>.png (rank 0) and notes it with its caption; a failure to draw is told
   /// once and noted.
   void draw(const std::string& name, const std::string& caption, const output::View& view);
@@ -82,6 +88,7 @@ class Context {
   void draw_any(const std::string& name, const std::string& caption, const Picture& picture);
 
   std::string directory_, why_none_;
+  std::map<std::string, std::string> step_file_;  ///< by the step's name
   bool pictures_, root_;
   double output_seconds_ = 0;
   std::unique_ptr<assembly::System> system_;

@@ -106,13 +106,11 @@ Json run_step(Context& context, const EquilibriumOptions& options) {
   follow_parts(context, options, runner, entry);
   entry["stages"] = runner.entries();
   const auto response = model::evaluate_response(system.model(), system.state());
-  const auto reactions = system.reactions();
-  entry["reactions"] = reactions_json(system, runner.boundary(), reactions);
-  if (const Json sums = balance_json(system, reactions); !sums.is_null()) entry["balance"] = sums;
+  entry["reactions"] = reactions_json(system, runner.boundary(), system.reactions());
   if (!runner.way().empty()) entry["path"] = runner.way();
   entry["critical_points"] = runner.critical();
-  entry["groups"] = groups_json(model::summarise_groups(system.model(), response), system.rounding_force());
-  if (context.surface) entry["surface"] = surface_json(measure(context));
+  entry["groups"] = groups_json(model::summarise_groups(system.model(), system.state(), response));
+  if (context.surface) entry["surface"] = surface_json(context, measure(context));
   if (context.umbrella) entry["rods"] = rods_json(context, response);
   context.write_fields(context.step_name, field_grid(context, response));
   draw_state(context, response);

@@ -53,6 +53,37 @@ void take_film(model::Model& structure, const FormNet& net, const Form& found) {
   }
 }
 
+/// What of the largest tension found is no more than its rounding [N].
+double rounding_of(const Form& found) {
+  constexpr double rounding = 1e-9;
+  return found.tension.size() > 0 ? rounding * found.tension.cwiseAbs().maxCoeff() : 0;
+}
+
+/// A net in which a cable would have to push is none of this structure: the cable would go slack and the net
+/// move.
+void refuse_pushed_cables(const model::Model& structure, const FormNet& net, Form& found) {
+  constexpr std::size_t most_named = 5;
+  if (!found.converged) return;
+  std::vector<int> pushed;
+  for (int b = 0; b < static_cast<int>(found.tension.size()); ++b) {
+    const auto& cable = structure.cables[static_cast<std::size_t>(net.cables[static_cast<std::size_t>(b)])];
+    const bool bar = structure.groups[static_cast<std::size_t>(cable.group)].kind == model::ElementKind::bar;
+    if (!bar && found.tension[b] < -100 * rounding_of(found)) pushed.push_back(b);
+  }
+  if (pushed.empty()) return;
+  std::sort(pushed.begin(), pushed.end(), [&](int a, int b) { return found.tension[a] < found.tension[b]; });
+  std::string names;
+  for (std::size_t i = 0; i < std::min(most_named, pushed.size()); ++i)
+    names += fmt::format("{}{} with {:.4g} N", i > 0 ? "; " : "", net.describe(structure, pushed[i]),
+                         -found.tension[pushed[i]]);
+  if (pushed.size() > most_named) names += "; ...";
+  found.converged = false;
+  found.reason = fmt::format(
+      "{} of the {} cables would have to push, which no cable can: {}. Ask for other tensions, give "
+      "`bounds`, or make them bars",
+      pushed.size(), found.tension.size(), names);
+}
+
 /// Cables of `ties` pull along z at the nodes of the net that lie on a surface.
 void take_ties(model::Model& structure, const FormNet& net, const Form& found,
                const std::vector<std::string>& groups) {
@@ -66,7 +97,8 @@ void take_ties(model::Model& structure, const FormNet& net, const Form& found,
       const Vec3 along = structure.nodes[tie.nodes[1 - end]] - structure.nodes[tie.nodes[end]];
       if (along.head<2>().norm() > 1e-3 * along.norm())
         structure.nodes[tie.nodes[1 - end]].head<2>() = structure.nodes[tie.nodes[end]].head<2>();
-      const double tension = found.reaction[node].z() * (along.z() > 0 ? 1 : -1);
+      const double pull = found.reaction[node].z() * (along.z() > 0 ? 1 : -1);
+      const double tension = std::abs(pull) <= rounding_of(found) ? 0 : pull;  // on a plane there is none
       if (tension < 0)
         throw ModelError(
             fmt::format("form-finding: the tie of \"{}\" at ({:.3f}, {:.3f}) would be pressed with "
@@ -90,8 +122,8 @@ void refresh_other_groups(Context& context, const std::vector<std::string>& sett
 
 /// Tensions of the structure's cables and bars as found, nothing displaced.
 Json found_groups_json(const model::Model& structure) {
-  auto groups = model::summarise_groups(
-      structure, model::evaluate_response(structure, model::State::initial(structure)));
+  const auto state = model::State::initial(structure);
+  auto groups = model::summarise_groups(structure, state, model::evaluate_response(structure, state));
   std::erase_if(groups, [](const auto& entry) {
     return entry.second.kind != model::ElementKind::cable && entry.second.kind != model::ElementKind::bar;
   });
@@ -100,8 +132,6 @@ Json found_groups_json(const model::Model& structure) {
 
 /// Force of each support on the net.
 Json support_forces(const model::Model& structure, const FormNet& net, const Form& found) {
-  double size = 0;
-  for (const Vec3& force : found.reaction) size = std::max(size, force.norm());
   Json supports = Json::object();
   for (const auto& support : structure.supports) {
     Vec3 sum = Vec3::Zero();
@@ -111,9 +141,7 @@ Json support_forces(const model::Model& structure, const FormNet& net, const For
         sum += found.reaction[i];
         any = true;
       }
-    if (any)
-      supports[support.name] = {
-          {"force", {on_grid(sum.x(), size), on_grid(sum.y(), size), on_grid(sum.z(), size)}}};
+    if (any) supports[support.name] = {{"force", {sum.x(), sum.y(), sum.z()}}};
   }
   return supports;
 }
@@ -231,15 +259,16 @@ Json run_step(Context& context, const FormFindingOptions& options) {
   std::optional<CoupledForm> coupled;
   if (context.surface && rear_form(context, options) != RearForm::mirrored)
     coupled = find_coupled(context, options, net);
-  const auto found = coupled                             ? coupled->front
-                     : options.frame != FrameKind::rigid ? find_with_frame(context, options, net, frame)
-                                                         : find_form(context, options, net);
+  auto found = coupled                             ? coupled->front
+               : options.frame != FrameKind::rigid ? find_with_frame(context, options, net, frame)
+                                                   : find_form(context, options, net);
+  refuse_pushed_cables(context.structure, net, found);
   Json entry{{"status", found.converged ? "done" : "not_converged"}, {"reason", found.reason}};
   entry.update(found.details);
   if (!frame.is_null()) entry.update(frame);
   if (coupled) entry["rear"] = coupled->details;
   if (!found.warnings.empty()) entry["warnings"] = found.warnings;
-  for (const auto& warning : found.warnings) context.progress.say("warning: " + warning);
+  for (const auto& warning : found.warnings) context.warn("form_finding", warning);
   draw_convergence(context, found);
   if (!found.converged && !found.details.contains("worst")) return entry;
   if (!found.converged && context.surface) return entry;

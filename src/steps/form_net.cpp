@@ -123,13 +123,29 @@ void hold_nodes(const model::Model& structure, const FormFindingOptions& options
                                  place(form.net.nodes[twice->node])));
 }
 
+/// Form-finding takes forces on nodes of the net. @throws ModelError for anything else in the load
+void check_load(const Context& context, const model::Load& load, const FormNet& form) {
+  const bool other = !load.moment.isZero(0) || load.moves() || !load.line_force.isZero(0) ||
+                     !load.line_moment.isZero(0) || !load.surface_force.isZero(0) || load.pressure != 0 ||
+                     load.heats() || !load.acceleration.isZero(0);
+  if (other)
+    throw ModelError(fmt::format(
+        "{}: step \"{}\" names it, but form-finding takes no loads but forces on nodes (`force`); leave the others "
+        "to the equilibrium that follows",
+        load.title(), context.step_name));
+  for (const int node : load.nodes)
+    if (form.local[node] < 0)
+      throw ModelError(fmt::format("{}: step \"{}\" names it, but the node at {} is no part of the net",
+                                   load.title(), context.step_name, place(context.structure.nodes[node])));
+}
+
 void add_loads(const Context& context, const FormFindingOptions& options, FormNet& form) {
   if (options.loads.empty()) return;
   form.net.load.assign(form.nodes.size(), Vec3::Zero());
   for (const auto& load : context.structure.loads) {
     if (std::find(options.loads.begin(), options.loads.end(), load.name) == options.loads.end()) continue;
-    for (const int node : load.nodes)
-      if (form.local[node] >= 0) form.net.load[form.local[node]] += load.force;
+    check_load(context, load, form);
+    for (const int node : load.nodes) form.net.load[form.local[node]] += load.force;
   }
 }
 

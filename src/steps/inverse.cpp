@@ -48,8 +48,8 @@ Json targets_json(const CableProblem& problem, const InverseOptions& options,
                     {"quantity", key.second},
                     {"nodes", group.count},
                     {"met", met},
-                    {"miss_max", above_rounding(group.largest, options.tolerance)},
-                    {"miss_rms", above_rounding(std::sqrt(group.squares / group.count), options.tolerance)}});
+                    {"miss_max", group.largest},
+                    {"miss_rms", std::sqrt(group.squares / group.count)}});
     if (!met) list.back()["worst_node"] = group.worst + 1;
     if (group.still > 0) list.back()["not_influenced"] = group.still;
   }
@@ -86,12 +86,12 @@ Json unknowns_json(const CableProblem& problem, const VecX& factors, const model
   return list;
 }
 
-Json iterations_json(const analysis::GaussNewtonSummary& found, double tolerance) {
+Json iterations_json(const analysis::GaussNewtonSummary& found) {
   Json list = Json::array();
   for (const auto& point : found.iterations)
-    list.push_back({{"miss_max", rounded(above_rounding(point.largest, tolerance))},
-                    {"miss_rms", rounded(above_rounding(point.rms, tolerance))},
-                    {"change", rounded(above_rounding(point.change, 1e-6))},
+    list.push_back({{"miss_max", point.largest},
+                    {"miss_rms", point.rms},
+                    {"change", point.change},
                     {"step", point.step}});
   return list;
 }
@@ -150,12 +150,12 @@ void write_tables(const Context& context, const CableProblem& problem, const mod
     for (std::size_t c = 0; c < targets.size(); ++c) targets[c].push_back(row[c]);
   }
   la::on_root([&] {
-    output::write_columns(context.path(context.step_name + "_cables.csv"),
+    output::write_columns(context.step_path("_cables.csv"),
                           {"unknown", "cable", "start_length", "unstressed_length", "start_stiffness",
                            "axial_stiffness", "tension"},
                           {cables.begin(), cables.end()});
-    output::write_columns(context.path(context.step_name + "_targets.csv"),
-                          {"target", "node", "x", "y", "z", "miss"}, {targets.begin(), targets.end()});
+    output::write_columns(context.step_path("_targets.csv"), {"target", "node", "x", "y", "z", "miss"},
+                          {targets.begin(), targets.end()});
   });
 }
 
@@ -181,10 +181,10 @@ void note_warnings(Context& context, Json& entry) {
   const auto warnings = warnings_of(entry);
   entry["warnings"] = warnings;
   if (warnings.empty()) return;
-  std::string text = fmt::format("step \"{}\": {}", context.step_name, warnings.front());
+  std::string text = warnings.front();
   if (warnings.size() > 1)
     text += fmt::format("; {} more in its \"warnings\" of results.json", warnings.size() - 1);
-  context.results["warnings"].push_back(text);
+  context.warn("inverse", text);
 }
 
 Json status_json(const analysis::GaussNewtonSummary& found) {
@@ -224,14 +224,14 @@ Json run_step(Context& context, const InverseOptions& options) {
   entry["n_targets"] = problem.targets().size();
   entry["n_unknowns"] = n;
   entry["rank"] = found.rank;
-  entry["condition"] = rounded(found.condition);
+  entry["condition"] = found.condition;
   entry["iterations"] = found.iterations.size() - 1;
-  entry["way"] = iterations_json(found, options.tolerance);
+  entry["way"] = iterations_json(found);
   entry["newton_iterations"] = problem.newton_iterations();
   entry["negative_pivots"] = problem.last_path().inertia.negative;
   entry["unknowns"] = unknowns_json(problem, found.parameters, response);
   entry["targets"] = targets_json(problem, options, found);
-  entry["groups"] = groups_json(model::summarise_groups(system.model(), response), system.rounding_force());
+  entry["groups"] = groups_json(model::summarise_groups(system.model(), system.state(), response));
   if (context.umbrella) entry["rods"] = rods_json(context, response);
   note_warnings(context, entry);
   write_tables(context, problem, system.model(), response);

@@ -1,6 +1,8 @@
 #include "steps/linear_buckling.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -8,34 +10,138 @@
 #include <tautline/assembly/mechanism.hpp>
 #include <tautline/core/error.hpp>
 
+#include "steps/buckling_course.hpp"
+
 namespace tautline::steps {
 
 namespace {
-
-constexpr double small_deformation = 1e-5;  // of the elements, where the tangent is linear in the load
 
 bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Displacements and rotations for a unit of the load factor at a tangent that was factored.
-la::Vector linear_response(assembly::System& system, analysis::Workspace& workspace) {
-  la::Vector rate(system.layout()), response(system.layout());
-  system.load_rate(rate);
-  workspace.solver.solve(rate, response);
-  system.add_drives(response);
-  return response;
+using assembly::Branch;
+using Sign = BucklingOptions::Sign;
+
+/// Why the present state has no factors, or nothing.
+std::string why_unstable(assembly::System& system, analysis::Workspace& workspace) {
+  const int negative = analysis::count_negative(system, workspace);
+  if (workspace.solver.inertia().null > 0 || !workspace.solver.failure().empty())
+    if (const auto mechanism = assembly::find_mechanism(system, workspace))
+      throw ModelError(fmt::format("linear buckling: {}", mechanism->text));
+  if (negative == 0) return "";
+  return fmt::format(
+      "the present state is unstable already: {} negative pivot{}. Buckling is looked for from a stable "
+      "state, so take away loads that act (loads of an equilibrium before)",
+      negative, negative == 1 ? "" : "s");
 }
 
-/// Factors from the eigenvalues nu of (K(h) - K(-h)) x = nu K x: lambda = -2 h / nu.
-LinearBuckling factors_of(la::EigenPairs pairs, double h) {
-  LinearBuckling result;
-  for (std::size_t i = 0; i < pairs.values.size(); ++i) {
-    result.factors.push_back(-2 * h / pairs.values[i]);
-    result.residuals.push_back(pairs.residuals[i]);
-    result.modes.push_back(std::move(pairs.vectors[i]));
+/// Whether elements answer a load and the opposite one differently.
+bool one_sided(assembly::System& system) {
+  la::Vector none(system.layout());
+  none.set_zero();
+  return system.may_wrinkle() || !system.pulls(none, 1).empty();
+}
+
+/// Whether all there is has a convex energy: cables, and cloth that wrinkles, under loads that do not follow.
+bool never_buckles(const model::Model& model) {
+  const auto kind_of = [&](const auto& element) -> const model::Group& {
+    return model.groups[static_cast<std::size_t>(element.group)];
+  };
+  return model.beams.empty() && model.shells.empty() && model.springs.empty() && model.links.empty() &&
+         std::none_of(model.cables.begin(), model.cables.end(),
+                      [&](const auto& cable) { return kind_of(cable).kind == model::ElementKind::bar; }) &&
+         std::all_of(model.membranes.begin(), model.membranes.end(),
+                     [&](const auto& m) { return kind_of(m).membrane.wrinkling; }) &&
+         std::all_of(model.loads.begin(), model.loads.end(),
+                     [](const auto& load) { return load.pressure == 0; });
+}
+
+void doubt_slack(const BucklingCourse& course, double sense, LinearBuckling& found) {
+  const auto next = course.next_switch();
+  if (!next) return;
+  if (course.stopped_short())
+    found.doubts.push_back(
+        {"buckling_many_slack",
+         fmt::format("cables go slack and taut so often that this was followed only to load factor {:.5g}: "
+                     "beyond it the factors let cables push that would be slack",
+                     sense * *next)});
+  else if (!course.factors().empty() && course.factors().back() > *next * (1 + 1e-9))
+    found.doubts.push_back(
+        {"buckling_slack",
+         fmt::format("at load factor {:.5g}, behind the first, a cable goes slack or taut: factors beyond it "
+                     "take the cables as they are at the first",
+                     sense * *next)});
+}
+
+/// 2 P / E A at the first factor, where that is no longer small.
+void doubt_strain(const assembly::System& system, const BucklingCourse& course, double sense,
+                  LinearBuckling& found) {
+  constexpr double large = 0.02;
+  if (course.factors().empty() || course.factors().front() == 0) return;
+  const double factor = course.factors().front();
+  la::Vector mean = course.response_at(factor);
+  mean.scale(1 / factor);
+  const auto strains = system.largest_strains(mean);
+  const auto most = std::max_element(strains.begin(), strains.end());
+  const double measure = 2 * std::abs(*most * factor);
+  if (!(measure > large)) return;
+  found.doubts.push_back(
+      {"buckling_large_strain",
+       fmt::format("at load factor {:.5g} members of \"{}\" are strained by {:.3g} % before they buckle, "
+                   "2 P/EA = {:.3g} %: linear buckling leaves out effects of this size. Ask for the path "
+                   "(control: arc_length, or the step collapse)",
+                   sense * factor,
+                   system.model().groups[static_cast<std::size_t>(most - strains.begin())].name, 50 * measure,
+                   100 * measure)});
+}
+
+/// Factors of loads times `sense`, nearest to zero first.
+void find_along(Context& context, const std::vector<std::string>& loads, int modes, double sense,
+                la::Extreme which, LinearBuckling& found) {
+  auto& system = context.system();
+  auto& workspace = context.workspace();
+  system.begin_stage(boundary_with(context, loads, sense));
+  found.failure = why_unstable(system, workspace);
+  if (!found.failure.empty()) return;
+  BucklingCourse course(system, workspace);
+  if (!course.stresses()) {
+    found.failure = "the loads named stress nothing, so that nothing can buckle under them";
+    return;
   }
-  return result;
+  course.find(modes, which);
+  doubt_slack(course, sense, found);
+  doubt_strain(system, course, sense, found);
+  auto& slack = found.slack[sense > 0 ? "positive" : "negative"];
+  const auto& cables = system.model().cables;
+  for (std::size_t i = 0; i < cables.size() && !course.factors().empty(); ++i)
+    if (course.branches()[i] == Branch::slack)
+      ++slack[system.model().groups[static_cast<std::size_t>(cables[i].group)].name];
+  auto& pairs = course.pairs();
+  for (std::size_t i = 0; i < course.factors().size(); ++i) {
+    found.factors.push_back(sense * course.factors()[i]);
+    found.residuals.push_back(pairs.residuals[i]);
+    found.modes.push_back(std::move(pairs.vectors[i]));
+  }
+}
+
+/// The `count` factors nearest to zero.
+void sort_and_cut(LinearBuckling& found, int count) {
+  std::vector<std::size_t> order(found.factors.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+    return std::abs(found.factors[i]) < std::abs(found.factors[j]);
+  });
+  order.resize(std::min<std::size_t>(order.size(), static_cast<std::size_t>(count)));
+  LinearBuckling kept;
+  for (const std::size_t i : order) {
+    kept.factors.push_back(found.factors[i]);
+    kept.residuals.push_back(found.residuals[i]);
+    kept.modes.push_back(std::move(found.modes[i]));
+  }
+  found.factors = std::move(kept.factors);
+  found.residuals = std::move(kept.residuals);
+  found.modes = std::move(kept.modes);
 }
 
 }  // namespace
@@ -74,36 +180,26 @@ std::string come_to_rest(Context& context) {
 }
 
 LinearBuckling linear_buckling(Context& context, const std::vector<std::string>& loads, int modes,
-                               BucklingOptions::Sign sign) {
+                               Sign sign) {
   auto& system = context.system();
-  auto& workspace = context.workspace();
-  LinearBuckling result;
+  if (never_buckles(system.model()))
+    throw ModelError(
+        "linear buckling: cables, and cloth that wrinkles, carry no compression, so that no load makes a "
+        "structure of them alone buckle. Ask for an equilibrium, or for modes");
+  LinearBuckling found;
   const auto rest = system.rest();
-  system.begin_stage(boundary_with(context, loads));
-  const int negative = analysis::count_negative(system, workspace);
-  if (workspace.solver.inertia().null > 0 || !workspace.solver.failure().empty())
-    if (const auto mechanism = assembly::find_mechanism(system, workspace))
-      throw ModelError(fmt::format("linear buckling: {}", mechanism->text));
-  if (negative > 0) {
-    result.failure = fmt::format(
-        "the present state is unstable already: {} negative pivot{}. Buckling is looked for from a stable "
-        "state, so take away loads that act (loads of an equilibrium before)",
-        negative, negative == 1 ? "" : "s");
-  } else if (const auto response = linear_response(system, workspace);
-             const double most = system.largest_deformation(response)) {
-    const double h = small_deformation / most;
-    system.tangent(workspace.tangent);
-    const auto difference =
-        system.stressed_tangent(response, h).plus(-1, system.stressed_tangent(response, -h));
-    const auto which = sign == BucklingOptions::Sign::both       ? la::Extreme::both
-                       : sign == BucklingOptions::Sign::positive ? la::Extreme::lowest
-                                                                 : la::Extreme::highest;
-    result = factors_of(la::solve_extreme(difference, workspace.tangent, modes, which), h);
+  if (sign == Sign::both && !one_sided(system)) {
+    find_along(context, loads, modes, 1, la::Extreme::both, found);
   } else {
-    result.failure = "the loads named move nothing, so that nothing can buckle under them";
+    for (const double sense : {1.0, -1.0}) {
+      if (sign == (sense > 0 ? Sign::negative : Sign::positive) || !found.failure.empty()) continue;
+      find_along(context, loads, modes, sense, la::Extreme::lowest, found);
+      system.restore(rest);
+    }
+    sort_and_cut(found, modes);
   }
   system.restore(rest);
-  return result;
+  return found;
 }
 
 }  // namespace tautline::steps

@@ -2,6 +2,7 @@
 /// @file
 /// Linear buckling of the present state, for the steps that need it. Theory: docs/theory/buckling.md
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,12 @@ struct LinearBuckling {
   std::vector<double> factors, residuals;
   std::vector<la::Vector> modes;
   std::string failure;  ///< empty if it worked
+  /// By sign of the factors and group: cables that are slack at the first factor.
+  std::map<std::string, std::map<std::string, int>> slack;
+  struct Doubt {
+    std::string code, message;
+  };
+  std::vector<Doubt> doubts;  ///< where the factors are not to be trusted
 };
 
 /// Names of loads that are scaled: those given, or all of the deck that do not act yet, except `but`.
@@ -34,6 +41,9 @@ std::string come_to_rest(Context& context);
 
 /// @brief Factors nearest to zero on the loads named, beside what acts at present, at which the tangent,
 /// linear in the factor, is singular. The system must be at rest and stays where it is.
+///
+/// Cables that only pull go slack and taut on the way; so do membranes that wrinkle where the way begins.
+/// Factors behind the first are those of the cables that are taut at the first.
 LinearBuckling linear_buckling(Context& context, const std::vector<std::string>& loads, int modes,
                                BucklingOptions::Sign sign);
 

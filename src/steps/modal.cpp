@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
 
+#include <tautline/core/error.hpp>
 #include <tautline/la/eigen_solver.hpp>
 #include <tautline/la/session.hpp>
 #include <tautline/model/response.hpp>
@@ -42,28 +45,44 @@ std::vector<la::Vector> rigid_motions(const assembly::System& system) {
   return motions;
 }
 
-/// (r^T M phi)^2 for modes normalised to phi^T M phi = 1: the mass that takes part [kg], [kg m^2]. What
-/// symmetry makes zero comes out as rounding; below 1e-5 of the whole it is reported as zero.
-Json effective_masses(const assembly::System& system, const la::SymmetricMatrix& mass,
-                      const la::EigenPairs& pairs) {
+/// What a mode may hold of its neighbours: the last digit of its eigenvalue over the distance to the nearest
+/// other one; all of it among equal ones, where only the sum over them is defined.
+double strange_part(const la::EigenPairs& pairs, std::size_t mode) {
+  constexpr double sharpness = 1e-12;  // of the eigenvalues, over the largest found
+  double distance = std::numeric_limits<double>::infinity(), largest = 0;
+  for (std::size_t i = 0; i < pairs.values.size(); ++i) {
+    largest = std::max(largest, std::abs(pairs.values[i]));
+    if (i != mode) distance = std::min(distance, std::abs(pairs.values[i] - pairs.values[mode]));
+  }
+  return std::min(1.0, distance > 0 ? sharpness * largest / distance : 1.0);
+}
+
+/// Adds (r^T M phi)^2 for modes normalised to phi^T M phi = 1, the mass that takes part [kg], [kg m^2]; and
+/// the level below which that means nothing: the whole mass times the square of what a mode lacks in
+/// sharpness.
+void add_effective_masses(const assembly::System& system, const la::SymmetricMatrix& mass,
+                          const la::EigenPairs& pairs, Json& entry) {
   const auto motions = rigid_motions(system);
-  Json table = Json::array();
+  Json table = Json::array(), levels = Json::array();
   la::Vector product(system.layout());
   std::vector<double> whole;
   for (const auto& motion : motions) {
     mass.multiply(motion, product);
     whole.push_back(motion.dot(product));
   }
-  for (const auto& mode : pairs.vectors) {
-    mass.multiply(mode, product);
-    Json row = Json::array();
+  for (std::size_t i = 0; i < pairs.vectors.size(); ++i) {
+    mass.multiply(pairs.vectors[i], product);
+    const double part = std::pow(strange_part(pairs, i), 2);
+    Json row = Json::array(), level = Json::array();
     for (std::size_t k = 0; k < motions.size(); ++k) {
-      const double share = std::pow(motions[k].dot(product), 2);
-      row.push_back(share > 1e-5 * whole[k] ? on_grid(share, whole[k]) : 0.0);
+      row.push_back(std::pow(motions[k].dot(product), 2));
+      level.push_back(part * whole[k]);
     }
     table.push_back(row);
+    levels.push_back(level);
   }
-  return table;
+  entry["effective_mass"] = table;
+  entry["effective_mass_rounding"] = levels;
 }
 
 }  // namespace
@@ -74,6 +93,11 @@ Json run_step(Context& context, const ModalOptions& options) {
   auto& workspace = context.workspace();
   system.tangent(workspace.tangent);
   const auto mass = system.mass(options.mass);
+  if (mass.norm_of_diagonal() == 0)
+    throw ModelError(
+        "nothing that can move has mass, so that there are no vibrations: give the materials a `density`, "
+        "the "
+        "sections a mass, or add point masses");
   context.progress.update(
       fmt::format("{} | {} modes of {} unknowns", context.step_name, options.modes, system.n_dofs()));
   const auto pairs = la::solve_vibration(workspace.tangent, mass, options.modes);
@@ -84,17 +108,17 @@ Json run_step(Context& context, const ModalOptions& options) {
   Json entry;
   entry["status"] = "done";
   entry["frequencies"] = Json::array();
-  entry["effective_mass"] = effective_masses(system, mass, pairs);
+  entry["frequency_rounding"] = std::sqrt(rounding) / (2 * std::numbers::pi);
+  add_effective_masses(system, mass, pairs, entry);
   entry["residuals"] = Json::array();
   auto grid = field_grid(context, model::evaluate_response(system.model(), system.state()));
   grid.point_fields.clear();
   for (int i = 0; i < options.modes; ++i) {
-    double eigenvalue = system.second_variation(pairs.vectors[i]);
-    if (std::abs(eigenvalue) <= rounding) eigenvalue = 0;
+    const double eigenvalue = system.second_variation(pairs.vectors[i]);
     const double frequency =
         std::copysign(std::sqrt(std::abs(eigenvalue)), eigenvalue) / (2 * std::numbers::pi);
     entry["frequencies"].push_back(frequency);
-    entry["residuals"].push_back(above_rounding(pairs.residuals[i], 1e-12));
+    entry["residuals"].push_back(pairs.residuals[i]);
     const Points shape = display_shape(system, pairs.vectors[i]);
     grid.point_fields.push_back(mode_field(fmt::format("mode {} ({:.4g} Hz)", i + 1, frequency), shape));
     if (i < 3 && context.draws())

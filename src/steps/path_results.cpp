@@ -17,11 +17,6 @@ namespace tautline::steps {
 
 namespace {
 
-/// Digits of the load factor that the search leaves certain; at a limit an error of the place is squared.
-int certain_digits(analysis::CriticalPoint::Kind kind) {
-  return kind == analysis::CriticalPoint::Kind::limit ? 11 : 8;
-}
-
 const char* name_of(analysis::CriticalPoint::Kind kind) {
   return kind == analysis::CriticalPoint::Kind::limit ? "limit" : "bifurcation";
 }
@@ -62,19 +57,15 @@ output::Curve curve_of(const Json& points, const Watched& watched, const std::st
 
 Json critical_point_json(assembly::System& system, const analysis::CriticalPoint& point,
                          const std::vector<std::string>& monitors) {
-  Json entry{{"lambda", to_digits(point.lambda, certain_digits(point.kind))},
+  Json entry{{"lambda", point.lambda},
              {"kind", name_of(point.kind)},
              {"negative_before", point.negative_before},
              {"negative_after", point.negative_after},
-             {"load_share", point.load_share < 1e-4 ? 0.0 : rounded(point.load_share)}};
+             {"load_share", point.load_share}};
   if (monitors.empty()) return entry;
   const auto there = system.keep();
   system.return_to(*point.kept);
-  Json values = monitors_json(system, monitors);
-  for (auto& [name, value] : values.items())
-    for (auto& [kind, triple] : value.items())
-      for (auto& component : triple) component = to_digits(component.get<double>(), 6);
-  entry["monitors"] = values;
+  entry["monitors"] = monitors_json(system, monitors);
   system.return_to(*there);
   return entry;
 }

@@ -117,10 +117,10 @@ void add_warnings(Context& context, Json& entry, std::vector<std::string> warnin
                                 stability.unstable, stability.unstable > 1 ? "s" : "", stability.least));
   entry["warnings"] = warnings;
   if (warnings.empty()) return;
-  std::string text = fmt::format("step \"{}\": {}", context.step_name, warnings.front());
+  std::string text = warnings.front();
   if (warnings.size() > 1)
     text += fmt::format("; {} more in its \"warnings\" of results.json", warnings.size() - 1);
-  context.results["warnings"].push_back(text);
+  context.warn("rod_shaping", text);
 }
 
 /// Leaves the umbrella as a structure for the steps that follow; or word of why it cannot be built.

@@ -149,9 +149,8 @@ class RodsReport {
     list("stiffness", [](const NodeMeans& n) { return n.stiffness; });
     Json moments = Json::array();
     for (const auto& node : nodes_) moments.push_back(node.moments > 0 ? node.moment / node.moments : 0);
-    moments.back() = on_grid(moments.back().get<double>(), moments.front().get<double>());
     entry["moments"] = moments;
-    entry["asymmetry"] = above_rounding(asymmetry(), 1e-9);
+    entry["asymmetry"] = asymmetry();
     add_errors(entry);
     return entry;
   }

@@ -12,6 +12,7 @@
 #include <tautline/output/tables.hpp>
 #include <tautline/steps/version.hpp>
 
+#include "steps/balance.hpp"
 #include "steps/context.hpp"
 #include "steps/summaries.hpp"
 
@@ -62,13 +63,35 @@ Json start_results(const deck::Deck& deck) {
                         {"slepc", versions.slepc},
                         {"mumps", versions.mumps},
                         {"ranks", la::size()}};
+  if (la::takes_petsc_options()) results["program"]["petsc_options"] = "taken from files and the environment";
   results["deck"] = {
       {"path", deck.path}, {"sha256", deck.sha256}, {"title", deck.title}, {"parameters", deck.parameters}};
   results["status"] = "interrupted";
   results["reason"] = "the run has not come to its end";
   results["steps"] = Json::array();
   results["pictures"] = Json::array();
+  results["warnings"] = Json::array();
   return results;
+}
+
+/// Whether a step makes what the steps behind it stand on, so that it is done anew when a run is taken up.
+bool builds(const Step& step) {
+  return std::holds_alternative<FormFindingOptions>(step.options) ||
+         std::holds_alternative<MeshOptions>(step.options) ||
+         std::holds_alternative<RodShapingOptions>(step.options);
+}
+
+/// Adds the balance of loads and reactions. A step that found an equilibrium is not done without it; one that
+/// stands where another left it warns.
+void judge_balance(Context& context, const Step& step, Json& entry) {
+  const auto rounding = context.system().rounding();
+  entry["balance"] = balance_json(context.system());
+  entry["rounding"] = {{"force", rounding.force}, {"moment", rounding.moment}};
+  const std::string reason = imbalance(entry["balance"]);
+  if (reason.empty() || entry["status"] != "done") return;
+  if (std::holds_alternative<ModalOptions>(step.options)) return context.warn("no_equilibrium", reason);
+  entry["status"] = "not_converged";
+  entry["reason"] = reason + ". Try a smaller solver.force_tolerance";
 }
 
 /// Runs one step and appends its entry. @return its status
@@ -86,6 +109,7 @@ std::string run_and_record(Context& context, const Step& step) {
     context.results["steps"].push_back(std::move(entry));
     throw;
   }
+  if (!builds(step) && context.has_system()) judge_balance(context, step, entry);
   add_performance(entry, before, Counters::of(context), seconds_since(start));
   const std::string status = entry["status"];
   if (status != "done")
@@ -113,13 +137,6 @@ void write_tables(Context& context, const assembly::System::NodalForces& reactio
   output::write_cut_list(context.path("cut_list.csv"), system.model(), response);
 }
 
-/// Whether a step makes what the steps behind it stand on, so that it is done anew when a run is taken up.
-bool builds(const Step& step) {
-  return std::holds_alternative<FormFindingOptions>(step.options) ||
-         std::holds_alternative<MeshOptions>(step.options) ||
-         std::holds_alternative<RodShapingOptions>(step.options);
-}
-
 /// Brings the run to where the checkpoint was written: structure and mesh are made again, all else is read.
 /// @return the number of steps done
 int take_up(Context& context, const Checkpoint& checkpoint, const std::string& from) {
@@ -135,9 +152,11 @@ int take_up(Context& context, const Checkpoint& checkpoint, const std::string& f
       std::visit([&](const auto& options) { return run_step(context, options); }, step.options);
   }
   context.results["steps"] = checkpoint.results["steps"];
+  context.results["warnings"] = checkpoint.results["warnings"];
   context.results["resumed"] = {{"from", from}, {"steps", checkpoint.steps_done}};
   if (checkpoint.point) context.results["resumed"]["lambda"] = checkpoint.point->place.lambda;
   context.acting_loads = checkpoint.acting_loads;
+  if (checkpoint.rest || checkpoint.point) require_fit(checkpoint, context.system().rest(), from);
   if (checkpoint.rest) context.system().restore(*checkpoint.rest);
   context.resume = checkpoint.point;
   context.checkpoints.begin_at(checkpoint);
@@ -145,7 +164,11 @@ int take_up(Context& context, const Checkpoint& checkpoint, const std::string& f
 }
 
 void leave_checkpoint(Context& context, int steps_done) {
-  Checkpoint checkpoint{steps_done, {{"steps", context.results["steps"]}}, context.acting_loads, {}, {}};
+  Checkpoint checkpoint{steps_done,
+                        {{"steps", context.results["steps"]}, {"warnings", context.results["warnings"]}},
+                        context.acting_loads,
+                        {},
+                        {}};
   if (context.has_system()) checkpoint.rest = context.system().rest();
   context.checkpoints.save(checkpoint);
 }
@@ -174,6 +197,9 @@ ExitCode run(const deck::Deck& deck, const RunSettings& settings, Progress& prog
   la::on_root([&] { output::prepare_directory(settings.directory); });
   watch_for_interrupt();
   context.results = start_results(deck);
+  if (la::takes_petsc_options())
+    progress.say(
+        "TAUTLINE_PETSC_OPTIONS=1: PETSc's options come from .petscrc files and PETSC_OPTIONS as well");
   context.note_model();
   context.save();
   ExitCode code = ExitCode::done;

@@ -22,13 +22,8 @@ Json newton_table(const analysis::PathSummary& path) {
   Json table = Json::array();
   for (const auto& point : path.points) {
     Json rows = Json::array();
-    for (const auto& [norms, increment, step] : point.newton.iterations) {
-      const double least = std::max(1e-10 * norms.reference_force, norms.rounding_force);
-      const double noise = norms.rounding_force > 1e-10 * norms.reference_force ? 1e-8 : 1e-12;
-      rows.push_back(
-          Json::array({rounded(above_rounding(without_rounding(norms.force, norms.rounding_force), least)),
-                       rounded(above_rounding(without_rounding(increment, noise), noise))}));
-    }
+    for (const auto& iteration : point.newton.iterations)
+      rows.push_back(Json::array({iteration.norms.force, iteration.increment}));
     table.push_back({{"lambda", point.lambda}, {"force_and_increment", rows}});
   }
   return table;
@@ -47,7 +42,7 @@ const char* key_of(analysis::LastResort method) {
 Json last_resort_json(const analysis::LastResortSummary& tried) {
   Json entry{{"gave_up", tried.gave_up},
              {"steps", tried.steps},
-             {"residual", rounded(tried.residual)},
+             {"residual", tried.residual},
              {"newton_iterations", tried.newton_iterations}};
   if (tried.method == analysis::LastResort::dynamic_relaxation) entry["peaks"] = tried.peaks;
   return entry;
@@ -75,6 +70,7 @@ StageRunner::StageRunner(Context& context, const EquilibriumOptions& options)
 Json StageRunner::entry_of(const StageOptions& stage, const assembly::OutOfBalance& start,
                            const analysis::PathSummary& path, double seconds) const {
   const bool walks = options_.control == Control::arc_length;
+  const auto rounding = context_.system().rounding();
   return {{"name", stage.name},
           {"status", path.reached ? "done" : "not_converged"},
           {"reason", path.reason},
@@ -85,8 +81,10 @@ Json StageRunner::entry_of(const StageOptions& stage, const assembly::OutOfBalan
           {"lambda", path.lambda()},
           {"negative_pivots", path.inertia.negative},
           {"null_pivots", path.inertia.null},
-          {"step0_out_of_balance", above_rounding(start.force, 1e-12)},
-          {"step0_out_of_balance_moment", above_rounding(start.moment, 1e-12)},
+          {"step0_out_of_balance", start.force},
+          {"step0_out_of_balance_moment", start.moment},
+          {"rounding", rounding.force},
+          {"rounding_moment", rounding.moment},
           {"newton", walks ? iterations_table(path) : newton_table(path)},
           {"wall_seconds", seconds}};
 }

@@ -1,6 +1,9 @@
+#include <set>
+
 #include <fmt/format.h>
 #include <fmt/os.h>
 
+#include <tautline/core/error.hpp>
 #include <tautline/la/session.hpp>
 #include <tautline/output/pictures.hpp>
 #include <tautline/output/results.hpp>
@@ -35,15 +38,20 @@ Json row_of(const Json& results, int subdivisions) {
 
 constexpr const char* measures[] = {"rms", "rms_direct", "rms_best_fit", "rms_area_weighted", "rms_nodes"};
 
-Json extrapolate(const Json& rows, const std::string& measure) {
+/// Of the three finest meshes; none if one of those asked for failed.
+Json extrapolate(const Json& study, const std::string& measure) {
+  const Json& rows = study["rows"];
   std::vector<double> size, value;
   for (const auto& row : rows) {
     size.push_back(1.0 / row["subdivisions"].get<int>());
     value.push_back(row["surface"][measure].get<double>());
   }
-  const auto found = extrapolate_three(size, value);
-  if (!found) return nullptr;
-  return {{"order", found->order}, {"limit", found->limit}};
+  auto found = extrapolate_three(size, value);
+  for (const auto& failed : study["failed"])
+    if (rows.size() < 3 || failed["subdivisions"] > rows[rows.size() - 3]["subdivisions"])
+      found.why_not = fmt::format("the run with {} parts failed", failed["subdivisions"].get<int>());
+  if (!found) return {{"order", nullptr}, {"limit", nullptr}, {"why_not", found.why_not}};
+  return {{"order", found.order}, {"limit", found.limit}};
 }
 
 void write_csv(const std::string& path, const Json& rows) {
@@ -87,11 +95,14 @@ std::string text_of(const Json& study) {
     text += fmt::format(" {:>7} {:>9.2f} {:>9.2f}\n", row["newton_iterations"].get<int>(),
                         row["solver_seconds"].get<double>(), row["wall_seconds"].get<double>());
   }
+  for (const auto& failed : study["failed"])
+    text += fmt::format("{:>4} failed: {}\n", failed["subdivisions"].get<int>(),
+                        failed["message"].get<std::string>());
   text += "(RMS in mm)\n";
   for (const char* measure : measures) {
     const auto& e = study["extrapolation"][measure];
-    if (e.is_null())
-      text += fmt::format("{:<20} no steady order in the three finest meshes\n", measure);
+    if (e["limit"].is_null())
+      text += fmt::format("{:<20} no extrapolation: {}\n", measure, e["why_not"].get<std::string>());
     else
       text += fmt::format("{:<20} order {:.2f}, extrapolated {:.4f} mm\n", measure, e["order"].get<double>(),
                           1e3 * e["limit"].get<double>());
@@ -114,22 +125,42 @@ void write_study(const std::string& directory, const Json& study, bool pictures,
 
 ExitCode study(const std::string& deck_path, const std::vector<std::string>& overrides,
                const std::vector<int>& subdivisions, const RunSettings& settings, Progress& progress) {
-  Json study{{"format", "tautline-study"}, {"version", 1}, {"deck", deck_path}, {"rows", Json::array()}};
+  Json study{{"format", "tautline-study"},
+             {"version", 1},
+             {"deck", deck_path},
+             {"rows", Json::array()},
+             {"failed", Json::array()}};
   ExitCode code = ExitCode::done;
-  for (const int s : subdivisions) {
+  for (const int s : std::set<int>(subdivisions.begin(), subdivisions.end())) {
     progress.say(fmt::format("study: {} parts of a facet side", s));
     auto all = overrides;
     all.push_back(fmt::format("parameters.subdivisions={}", s));
     const auto deck = deck::read_deck(deck_path, all);
     const std::string directory = fmt::format("{}/s{}", settings.directory, s);
-    code = run(deck, {directory, settings.pictures, ""}, progress);
-    if (code != ExitCode::done) break;
-    la::on_root(
-        [&] { study["rows"].push_back(row_of(output::read_results(directory + "/results.json"), s)); });
+    std::string why;
+    ExitCode ended = ExitCode::done;
+    try {
+      ended = run(deck, {directory, settings.pictures, ""}, progress);
+    } catch (const ModelError& error) {
+      ended = ExitCode::impossible_model;
+      why = error.what();
+    }
+    if (ended == ExitCode::interrupted) {
+      code = ended;
+      break;
+    }
+    la::on_root([&] {
+      if (ended == ExitCode::done) {
+        study["rows"].push_back(row_of(output::read_results(directory + "/results.json"), s));
+      } else {
+        if (why.empty()) why = output::read_results(directory + "/results.json").value("reason", "");
+        study["failed"].push_back({{"subdivisions", s}, {"message", why}});
+      }
+    });
+    if (ended != ExitCode::done) code = ended;
   }
   la::on_root([&] {
-    for (const char* measure : measures)
-      study["extrapolation"][measure] = extrapolate(study["rows"], measure);
+    for (const char* measure : measures) study["extrapolation"][measure] = extrapolate(study, measure);
     write_study(settings.directory, study, settings.pictures, progress);
     fmt::print("{}", text_of(study));
   });

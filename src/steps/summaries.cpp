@@ -1,41 +1,12 @@
 #include "steps/summaries.hpp"
 
-#include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
 
 namespace tautline::steps {
 
-double above_rounding(double value, double floor) {
-  return std::max(value, floor);
-}
-
-double on_grid(double value, double size) {
-  if (!(size > 0)) return 0;
-  const double grid = std::pow(10.0, std::floor(std::log10(size)) - 10);
-  const double steps = std::round(value / grid);
-  return steps == 0 ? 0.0 : steps * grid;
-}
-
-double rounded(double value) {
-  return to_digits(value, 3);
-}
-
-double to_digits(double value, int digits) {
-  return std::stod(fmt::format("{:.{}g}", value, digits));
-}
-
-double without_rounding(double value, double rounding) {
-  constexpr double digits = 1e-6;
-  if (rounding <= digits * std::abs(value)) return value;
-  const double grid = std::pow(10.0, std::ceil(std::log10(rounding)));
-  return grid * std::round(value / grid);
-}
-
-Json groups_json(const std::map<std::string, model::GroupSummary>& groups, double rounding) {
+Json groups_json(const std::map<std::string, model::GroupSummary>& groups) {
   Json result = Json::object();
   for (const auto& [name, g] : groups) {
     Json entry{{"count", g.count}};
@@ -51,8 +22,8 @@ Json groups_json(const std::map<std::string, model::GroupSummary>& groups, doubl
         entry["axial_max"] = g.axial_max;
       }
     } else if (g.kind == ElementKind::beam) {
-      entry["axial_min"] = without_rounding(g.axial_min, rounding);
-      entry["axial_max"] = without_rounding(g.axial_max, rounding);
+      entry["axial_min"] = g.axial_min;
+      entry["axial_max"] = g.axial_max;
       entry["moment_max"] = g.moment_max;
     } else if (g.kind == ElementKind::membrane || g.kind == ElementKind::shell) {
       entry["principal_min"] = g.principal_min;
@@ -66,17 +37,25 @@ Json groups_json(const std::map<std::string, model::GroupSummary>& groups, doubl
       entry["force_max"] = g.force_max;
       entry["moment_max"] = g.moment_max;
     }
+    if (entry.size() > 1) entry["rounding"] = g.rounding.force;
+    if (entry.contains("moment_max")) entry["rounding_moment"] = g.rounding.moment;
     result[name] = entry;
   }
   return result;
 }
 
-Json surface_json(const reflector::SurfaceError& e) {
+Json surface_json(Context& context, const reflector::SurfaceError& e) {
+  if (!e.best_fit_converged)
+    context.warn(
+        "best_fit_not_converged",
+        "the search for the best-fit paraboloid ended before it converged: its RMS is an upper bound "
+        "and its focal length is not to be used");
   Json entry{{"rms", e.rms},
              {"mean_shift", e.mean_shift},
              {"rms_direct", e.rms_direct},
              {"rms_best_fit", e.rms_best_fit},
              {"best_fit_focal_length", e.best_fit_focal_length},
+             {"best_fit_converged", e.best_fit_converged},
              {"rms_area_weighted", e.rms_area_weighted},
              {"rms_nodes", e.rms_nodes},
              {"rms_half_path", e.rms_half_path},

@@ -205,8 +205,8 @@ Json run_step(Context& context, const TuningStepOptions& step) {
   entry["iterations"] = passes;
   entry["newton_iterations"] = newton;
   const auto response = model::evaluate_response(system.model(), system.state());
-  entry["groups"] = groups_json(model::summarise_groups(system.model(), response), system.rounding_force());
-  entry["surface"] = surface_json(error);
+  entry["groups"] = groups_json(model::summarise_groups(system.model(), system.state(), response));
+  entry["surface"] = surface_json(context, error);
   context.write_fields(context.step_name, field_grid(context, response));
   draw_state(context, response);
   draw_passes(context, passes);

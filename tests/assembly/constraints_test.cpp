@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "assembly/dense.hpp"
 #include "assembly/models.hpp"
@@ -139,6 +141,146 @@ TEST(Links, RingsAreRefused) {
   EXPECT_THROW(model::links_in_order(model), ModelError);
 }
 
+/// Beams, a facet and a cable in space, tied to each other at random by arms, ball joints, hinges, linear
+/// constraints and a cyclic pair; loads on every node and pressure on the facet.
+struct Tied {
+  model::Model model;
+  Boundary boundary;
+};
+
+Tied tied_at_random(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+  const auto vector = [&] { return Vec3(any(random), any(random), any(random)); };
+  constexpr int n_beams = 5, n_nodes = 2 * n_beams + 3;
+  Tied result;
+  auto& model = result.model;
+  for (int i = 0; i < n_nodes; ++i) model.nodes.push_back(Vec3(2.0 * (i / 2), 1.5 * (i % 2), 0) + 0.4 * vector());
+  std::vector<bool> follows(n_nodes, false);
+  for (int beam = 1; beam < n_beams; ++beam) {  // each hangs on one before it
+    if (below(4) == 0) continue;
+    model::Link link{below(2 * beam), 2 * beam + below(2), false, {}, 0};
+    const int kind = below(4);
+    link.rotation_free = kind == 1;
+    for (int axis = 2; axis <= kind; ++axis) link.hinge.push_back(vector().normalized());
+    if (below(2) == 0) model.nodes[link.follower] = model.nodes[link.leader];
+    follows[link.follower] = true;
+    model.links.push_back(link);
+  }
+  const int rods = add_beam_group(model, "rods");
+  model.groups[rods].beam = rod();
+  for (int beam = 0; beam < n_beams; ++beam) add_beam(model, rods, 2 * beam, 2 * beam + 1);
+  const int cloth = add_membrane_group(model, "cloth"), rope = add_cable_group(model, "rope", 1e4);
+  const int first = 2 * n_beams;
+  model.membranes.push_back({{first, below(first), first + 1}, cloth, Vec3(300, 200, 0)});
+  add_cable(model, rope, first + 2, below(first), 0.02);
+  add_cable(model, rope, first + 2, first, 0.02);
+  const auto owner = [&](int from) {  // a node that follows nothing
+    int node = from + below(n_nodes - from);
+    while (follows[node]) node = from + below(n_nodes - from);
+    return node;
+  };
+  const auto follows_link = follows;
+  if (below(2) == 0) {
+    const int leader = owner(1), follower = owner(1);
+    const bool leads = std::any_of(model.links.begin(), model.links.end(),
+                                   [&](const model::Link& link) { return link.leader == leader; });
+    if (leader != follower && !leads) {
+      model.cyclic_pairs.push_back(
+          {leader, follower, Eigen::AngleAxisd(0.8, vector().normalized()).toRotationMatrix()});
+      follows[follower] = true;
+    }
+  }
+  std::vector<int> taken{0};
+  for (int i = 0; i < 3; ++i) {  // each node follows those of smaller number
+    const int node = owner(2);
+    if (std::find(taken.begin(), taken.end(), node) != taken.end()) continue;
+    taken.push_back(node);
+    model::LinearConstraint constraint;
+    constraint.terms.push_back({node, below(3), 0.5 + 0.4 * any(random)});
+    for (int k = 0; k < 2; ++k) {
+      int other = below(node);
+      while (follows_link[other]) other = below(node);
+      constraint.terms.push_back({other, below(3), any(random)});
+    }
+    model.constraints.push_back(constraint);
+  }
+  result.boundary.supports = {support({0}, clamped)};
+  for (int i = 1; i < n_nodes; ++i)
+    result.boundary.loads.push_back(load(i, 30 * vector(), model.rotational_nodes()[i] ? vector() : Vec3(Vec3::Zero())));
+  model::Load gas;
+  gas.on = {"cloth"};
+  gas.pressure = 4000;
+  result.boundary.loads.push_back(gas);
+  return result;
+}
+
+/// Whether the constraints make no ring through the cyclic pair.
+bool is_possible(const Tied& tied) {
+  try {
+    System system(tied.model);
+  } catch (const ModelError&) {
+    return false;
+  }
+  return true;
+}
+
+TEST(Links, TangentOfAnyMixtureOfTiesIsTheDerivativeOfTheResidual) {
+  int met = 0;
+  for (unsigned seed = 0; met < 60; ++seed) {
+    ASSERT_LT(seed, 80U);
+    const auto tied = tied_at_random(seed);
+    if (!is_possible(tied)) continue;
+    ++met;
+    SCOPED_TRACE(seed);
+    expect_consistent_tangent(tied.model, tied.boundary);
+    if (HasFailure()) return;
+  }
+}
+
+TEST(Links, AnyMixtureOfTiesHoldsInAMovedState) {
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    const auto tied = tied_at_random(seed);
+    if (!is_possible(tied)) continue;
+    System system(tied.model);
+    system.begin_stage(tied.boundary);
+    const auto state = moved_state(system);
+    const auto x = model::positions(tied.model, state);
+    for (const auto& link : tied.model.links) {
+      const Vec3 arm = tied.model.nodes[link.follower] - tied.model.nodes[link.leader];
+      EXPECT_LT((x[link.follower] - x[link.leader] - state.rotation[link.leader] * arm).norm(), 1e-14) << seed;
+    }
+    for (const auto& pair : tied.model.cyclic_pairs)
+      EXPECT_LT((state.displacement[pair.follower] - pair.turn * state.displacement[pair.leader]).norm(), 1e-14);
+    for (const auto& constraint : tied.model.constraints) {
+      double sum = 0;
+      for (const auto& term : constraint.terms)
+        sum += term.coefficient * state.displacement[term.node][term.component];
+      EXPECT_NEAR(sum, 0, 1e-14) << seed;
+    }
+  }
+}
+
+TEST(LinearConstraint, IsRefusedWhereItCannotHold) {
+  const auto refused = [](std::vector<model::LinearConstraint> constraints) {
+    auto model = two_beams({0.2, 0.5, -0.3}, {});
+    model.constraints = std::move(constraints);
+    try {
+      System system(model);
+    } catch (const ModelError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refused({{{{3, 0, 1}, {2, 1, 1}}, {}}}).find("through an arm"), std::string::npos);
+  EXPECT_NE(refused({{{{3, 0, 1}, {1, 1, 1}}, {}}, {{{1, 1, 1}, {3, 0, 1}}, {}}}).find("follows itself"),
+            std::string::npos);
+  EXPECT_NE(refused({{{{3, 0, 1}, {1, 1, 1}}, {}}, {{{3, 0, 1}, {1, 2, 1}}, {}}}).find("another linear constraint"),
+            std::string::npos);
+  EXPECT_EQ(refused({{{{3, 0, 1}, {1, 1, 1}}, {}}, {{{3, 1, 1}, {3, 0, 1}}, {}}}), "");
+}
+
 /// A cantilever along x whose tip may slide along a direction at 30 degrees in the x-z plane.
 TEST(RotatedSupports, LetTheNodeSlideAlongTheirFreeDirection) {
   auto model = cantilever(4, 1.0, rod());
@@ -174,7 +316,7 @@ TEST(LinearConstraint, SharesALoadByVirtualWork) {
   model.groups[group].beam = rod();
   add_beam(model, group, 0, 1);
   add_beam(model, group, 2, 3);
-  model.constraints.push_back({{{3, 2, 1.0}, {1, 2, -2.0}}});
+  model.constraints.push_back({{{3, 2, 1.0}, {1, 2, -2.0}}, {}});
   System system(model);
   const double p = 1e-3, k = 3 * rod().bending_stiffness_2;
   solve(system, {{support({0, 2}, clamped)}, {load(1, {0, 0, p})}});

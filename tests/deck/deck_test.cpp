@@ -109,6 +109,23 @@ TEST(Deck, CarriesTheDigestOfItsBytes) {
   EXPECT_NE(parse_deck(text + "\n", "deck.yaml").sha256, digest);
 }
 
+TEST(Deck, FingerprintIsThatOfTheMeshFilesContent) {
+  const auto folder = std::filesystem::temp_directory_path() / fmt::format("tautline_fingerprint_{}", getpid());
+  std::filesystem::create_directories(folder);
+  const auto fingerprint = [&](const std::string& mesh) {
+    test::write_file(folder / "film.msh", mesh);
+    const std::string text =
+        "model: {mesh: film.msh}\n"
+        "sections: {film: {kind: membrane, tension_stiffness: 1000, poisson_ratio: 0, mass_per_area: 0}}\n"
+        "groups: {film: {section: film}}\nsupports: [{on: film}]\nsteps: [{kind: equilibrium}]\n";
+    return parse_deck(text, (folder / "deck.yaml").string()).fingerprint;
+  };
+  const auto first = fingerprint("one mesh");
+  EXPECT_EQ(fingerprint("one mesh"), first);
+  EXPECT_NE(fingerprint("one mash"), first);
+  std::filesystem::remove_all(folder);
+}
+
 TEST(Deck, ReadsTwentyThousandNodes) {
   std::string nodes, elements;
   for (int i = 0; i < 20000; ++i) {

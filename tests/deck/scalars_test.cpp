@@ -1,7 +1,7 @@
+#include <tautline/core/sha256.hpp>
 #include <gtest/gtest.h>
 
 #include <deck/scalars.hpp>
-#include <deck/sha256.hpp>
 
 namespace tautline::deck {
 namespace {

@@ -17,7 +17,8 @@ Specimen catenary(const std::string& name, const CatenaryProperties& properties,
     });
     return answer_of(response, want);
   };
-  s.is_free = false;
+  s.field_force = properties.mass_per_length * properties.unstressed_length * acceleration;
+  s.in_turned_field = [=](const Mat3& Q) { return catenary(name, properties, Q * acceleration); };
   return s;
 }
 

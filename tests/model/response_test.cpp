@@ -23,6 +23,11 @@ Model three_cables() {
   return model;
 }
 
+GroupSummary summary_at_rest(const Model& model, const std::string& group) {
+  const auto state = State::reference(model);
+  return summarise_groups(model, state, evaluate_response(model, state)).at(group);
+}
+
 TEST(Response, HasTheTensionAndTheLengthOfEveryCable) {
   const auto model = three_cables();
   auto state = State::reference(model);
@@ -37,7 +42,7 @@ TEST(Response, HasTheTensionAndTheLengthOfEveryCable) {
 
 TEST(GroupSummary, HasTheSpreadOfTensionsAndTheirDistanceFromTheTarget) {
   const auto model = three_cables();
-  const auto summary = summarise_groups(model, evaluate_response(model, State::reference(model))).at("cord");
+  const auto summary = summary_at_rest(model, "cord");
   EXPECT_EQ(summary.count, 3);
   EXPECT_EQ(summary.slack, 1);
   EXPECT_NEAR(summary.tension_min, 0, 0);
@@ -50,7 +55,7 @@ TEST(GroupSummary, HasTheSpreadOfTensionsAndTheirDistanceFromTheTarget) {
 TEST(GroupSummary, OfAGroupWithoutElementsIsZero) {
   auto model = three_cables();
   add_membrane_group(model, "none");
-  const auto summary = summarise_groups(model, evaluate_response(model, State::reference(model))).at("none");
+  const auto summary = summary_at_rest(model, "none");
   EXPECT_EQ(summary.count, 0);
   EXPECT_EQ(summary.principal_min, 0);
   EXPECT_EQ(summary.principal_max, 0);
@@ -62,7 +67,7 @@ TEST(Response, OfAPrestressedMembraneAtRestIsItsPrestress) {
   // Principal values of N0 = [300 40; 40 100]: 200 +- sqrt(100^2 + 40^2).
   EXPECT_NEAR(response.membranes[0].principal_cauchy[0], 200 + std::hypot(100, 40), 1e-9);
   EXPECT_NEAR(response.membranes[0].principal_cauchy[1], 200 - std::hypot(100, 40), 1e-9);
-  const auto summary = summarise_groups(model, response).at("cloth");
+  const auto summary = summary_at_rest(model, "cloth");
   EXPECT_NEAR(summary.principal_max, 225 + std::hypot(175, 70), 1e-9);
   EXPECT_NEAR(summary.principal_min, 225 - std::hypot(175, 70), 1e-9);
 }

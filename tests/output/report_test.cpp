@@ -117,7 +117,7 @@ TEST(Report, SaysOnTopWhenTheRunIsNotComplete) {
   Json results = complete_run();
   results["status"] = "not_converged";
   results["reason"] = "step \"load\": residual 3 N > 1e-6 N";
-  results["warnings"] = {"no <pictures>"};
+  results["warnings"] = Json::array({{{"code", "c"}, {"message", "no <pictures>"}, {"where", "step \"a\""}}});
   results["steps"].erase(4);
   results["steps"].erase(3);
   const auto html = report_of(directory, results);
@@ -128,7 +128,7 @@ TEST(Report, SaysOnTopWhenTheRunIsNotComplete) {
   EXPECT_TRUE(holds(html, "residual 3 N &gt; 1e-6 N"));
   EXPECT_TRUE(holds(html, "Last state")) << "not final";
   EXPECT_FALSE(holds(html, "Final state"));
-  EXPECT_TRUE(holds(html, "no &lt;pictures&gt;"));
+  EXPECT_TRUE(holds(html, "step &quot;a&quot;: no &lt;pictures&gt;"));
 }
 
 TEST(Report, AnyPartMayBeMissing) {

@@ -152,6 +152,82 @@ TEST(SurfaceError, BestFitIsNeverWorseThanTheAxialShift) {
   EXPECT_GT(error.rms_best_fit, 0.5 * error.rms_area_weighted);
 }
 
+/// A dish of the aperture's size with a deviation of low order, of `amplitude` at the rim.
+SurfaceSample rough(const Paraboloid& dish, double amplitude) {
+  const double r = dish.aperture() / 2;
+  return hexagon(8, dish.aperture() / 17, [&](double x, double y) {
+    const double u = x / r, v = y / r;
+    return dish.height(x, y) + amplitude * (u * u * u + 0.5 * v * v - 0.7 * u * v + 0.2 * std::sin(5 * u));
+  });
+}
+
+/// References by an independent least squares: Levenberg and Marquardt's method in Python with derivatives by
+/// differences, rotations about the vertex, the focal length itself, and Radon's rule of seven points (degree
+/// 5), which differs from the rule of degree 4 here by some 1e-5.
+TEST(SurfaceError, BestFitOfRoughDishesIsThatOfAnIndependentLeastSquares) {
+  struct {
+    double aperture, focal_length, clearance, part, rms, found;
+  } cases[] = {{12, 8, 1.125, 0.02, 0.006784954723, 7.255650491},
+               {12, 8, 1.125, 0.1, 0.0331345692, 4.808327155},
+               {12, 6, -6, 0.02, 0.01307238775, 5.650715739},
+               {12, 6, -6, 0.1, 0.03850364387, 4.137797445},
+               {120, 48, 10, 0.02, 0.07220032624, 45.19215842},
+               {120, 48, 10, 0.1, 0.3530175286, 34.7440848},
+               {0.012, 0.008, 0.001125, 0.1, 3.31345692e-05, 0.004808327155}};
+  for (const auto& c : cases) {
+    const Paraboloid dish(c.aperture, c.focal_length, c.clearance);
+    const SurfaceError error = measure_surface(dish, rough(dish, c.part * c.aperture / 2));
+    EXPECT_NEAR(error.rms_best_fit, c.rms, 1e-4 * c.rms) << c.aperture << " m, " << c.part;
+    EXPECT_NEAR(error.best_fit_focal_length, c.found, 1e-4 * c.found);
+    EXPECT_TRUE(error.best_fit_converged);
+  }
+}
+
+TEST(SurfaceError, BestFitOfADishTurnedAndMovedFarIsThatOfTheDishItself) {
+  // Turned by half a radian and moved by metres; reference as above.
+  const Paraboloid dish(12, 8, 1.125);
+  SurfaceSample sample = rough(dish, 0.1);
+  const Vec3 turn(0.3, -0.5, 0.2);
+  for (Vec3& point : sample.positions)
+    point = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * point + Vec3(1.5, -2, 0.8);
+  const SurfaceError error = measure_surface(dish, sample);
+  EXPECT_NEAR(error.rms_best_fit, 0.006844112198, 1e-4 * 0.006844112198);
+  EXPECT_NEAR(error.best_fit_focal_length, 7.359538008, 1e-4 * 7.36);
+  // Facets alone, far from where they belong.
+  for (const double clearance : {1.125, -6.0, 20.0}) {
+    const Paraboloid wanted(12, 8, clearance);
+    SurfaceSample exact = fine_exact(Paraboloid(12, 9, clearance));
+    for (Vec3& point : exact.positions)
+      point = Eigen::AngleAxisd(0.6, Vec3(1, 2, 3).normalized()) * point + Vec3(-2, 1, 3);
+    const SurfaceError far = measure_surface(wanted, exact);
+    EXPECT_LT(far.rms_best_fit, 1e-4) << "0.02 mm of facets, seen along a line that is turned";
+    EXPECT_NEAR(far.best_fit_focal_length, 9, 0.01);
+    EXPECT_TRUE(far.best_fit_converged);
+  }
+}
+
+TEST(SurfaceError, BestFitIsNeverAboveTheOthersByArea) {
+  for (int seed = 1; seed <= 40; ++seed) {
+    const auto draw = [&](int i) { return std::sin(12.9898 * seed + 78.233 * i); };
+    const Paraboloid dish(12, 6 + 4 * std::abs(draw(0)), seed % 3 == 0 ? -6 : 3 * std::abs(draw(1)));
+    SurfaceSample sample = hexagon(5, 1.1, [&](double x, double y) { return dish.height(x, y); });
+    int i = 2;
+    for (Vec3& point : sample.positions)
+      point += std::pow(10, 2 * draw(7) - 1) * Vec3(draw(i++), draw(i++), draw(i++));
+    const SurfaceError error = measure_surface(dish, sample);
+    EXPECT_LE(error.rms_best_fit, error.rms_area_weighted * (1 + 1e-12)) << seed;
+    EXPECT_LE(error.rms_best_fit, error.rms_area_weighted_direct * (1 + 1e-12)) << seed;
+    EXPECT_TRUE(error.best_fit_converged) << seed;
+  }
+}
+
+TEST(SurfaceError, BestFitOfAPlaneIsFlat) {
+  const Paraboloid dish(12, 8, -6);
+  const SurfaceError error = measure_surface(dish, hexagon(8, 0.7, [](double x, double) { return 0.2 * x; }));
+  EXPECT_LT(error.rms_best_fit, 1e-9);
+  EXPECT_GT(std::abs(error.best_fit_focal_length), 1e6);
+}
+
 TEST(SurfaceError, HalfPathErrorOfAnAxialWaveIsSmallerTowardsTheRim) {
   // delta = e_z / (1 + (r/2f)^2). With e_z = (1 + (r/2f)^2)(c + a x) the half path error is c + a x: over a
   // hexagon of circumradius R its rms about the mean is a R sqrt(5/24) (second moment of a regular hexagon).

@@ -43,7 +43,7 @@ says "$WORK/lee/results.json" '"limit"'
 
 expect 0 "$TAUTLINE" run "$deck" -o "$WORK/more" --from "$whole" "${options[@]}" --set steps.modal.modes=6
 says "$WORK/more/results.json" '"steps": 3'
-expect 2 "$TAUTLINE" run "$deck" -o "$WORK/other" --from "$whole" --quiet --set parameters.side=2000
+expect 5 "$TAUTLINE" run "$deck" -o "$WORK/other" --from "$whole" --quiet --set parameters.side=2000
 says "$WORK/err" 'another structure'
 expect 5 "$TAUTLINE" run "$deck" -o "$WORK/other" --from "$WORK/nowhere" --quiet
 says "$WORK/err" 'no checkpoints'

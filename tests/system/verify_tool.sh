@@ -24,6 +24,7 @@ examine 0 'size({a:nodes.csv#x?group=net&id<=2})' 'reference: 2, relative: 0, or
 examine 0 'size({a:nodes.csv#x?group=net&id>=2&id<=2})' 'reference: 1, relative: 0, origin: analytic'
 examine 0 'max({a:nodes.csv#x?within=5})' 'reference: 3, relative: 0, origin: analytic'
 examine 0 '{a:/steps/one/rms}' 'at_most: 2, origin: requirement'
+examine 0 '{a:/steps/one/rms}' 'at_most: 2, origin: invariant'
 examine 1 '{a:/steps/one/rms}' 'at_most: 1.9, origin: requirement'
 examine 1 '{a:/steps/one/rms}' 'reference: 2.01, relative: 0.004, origin: analytic'
 examine 1 '{a:/steps/one/lost}' 'reference: 2, relative: 1, origin: analytic'

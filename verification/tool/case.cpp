@@ -14,6 +14,7 @@ namespace verify {
 namespace {
 
 const std::map<std::string, Origin> origins{{"analytic", Origin::analytic},
+                                            {"invariant", Origin::invariant},
                                             {"published", Origin::published},
                                             {"other_code", Origin::other_code},
                                             {"regression", Origin::regression},

@@ -25,7 +25,7 @@ struct Run {
 };
 
 enum class Check { equal, at_most, at_least, report_only };
-enum class Origin { analytic, published, other_code, regression, requirement };
+enum class Origin { analytic, invariant, published, other_code, regression, requirement };
 
 /// A number with its reference.
 struct Quantity {

@@ -119,7 +119,8 @@ std::string overview_page(const std::vector<CaseResults>& cases) {
   std::string page =
       "<!-- Made by tautline_verify; do not edit. -->\n\n# Verification\n\nWhat the program computes beside "
       "what is known. Each reference "
-      "says where it comes from: `analytic` (a formula), `published`, `other_code` (an independent program), "
+      "says where it comes from: `analytic` (a formula), `invariant` (what must hold whatever the answer is, as "
+      "the balance of loads and reactions), `published`, `other_code` (an independent program), "
       "`regression` (a recorded value of our own, "
       "no evidence), `requirement` (what this project asks of itself). \"shown\" is reported, not asserted; "
       "the case's page says why.\n\n"

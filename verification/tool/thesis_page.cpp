@@ -59,6 +59,8 @@ const char* word(Origin origin) {
       return "thesis";
     case Origin::analytic:
       return "formula";
+    case Origin::invariant:
+      return "invariant";
     case Origin::other_code:
       return "other code";
     case Origin::requirement:

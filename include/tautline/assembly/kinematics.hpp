@@ -52,8 +52,13 @@ class Kinematics {
   /// The increment of the unknowns of one block that turns and moves it as the nodal increment `value`.
   Vec3 unknown_of(int block, const Vec3& value) const { return frame(block).transpose() * value; }
 
+  /// Displacement components that follow from the linear constraints, one for each of these.
+  const std::vector<model::LinearConstraint::Term>& constrained() const noexcept { return constrained_; }
+
   /// Links whose follower is `node`, or -1.
   int link_of(int node) const noexcept { return link_of_[static_cast<std::size_t>(node)]; }
+  /// Whether a link leaves the rotation of its follower alone.
+  bool rotation_is_free(int link) const { return model_->links[static_cast<std::size_t>(link)].rotation_free; }
   /// Part of the second derivative that a force and moment on a link's follower add, order (leader's spin,
   /// hinge angles); see the theory page.
   Mat<6> second_derivative(int link, const Vec3& force, const Vec3& moment) const;
@@ -66,6 +71,7 @@ class Kinematics {
     std::array<Vec3, 3> axis;  ///< hinge axes at present
   };
 
+  void resolve_constraints();
   void find_fixed_dependences();
   Mat3 leader_rotation(const model::State& state, const model::Link& link) const;
 
@@ -74,6 +80,9 @@ class Kinematics {
   std::vector<bool> plain_, held_;
   std::vector<Mat3> frame_;
   std::vector<std::vector<Dependence>> displacement_, rotation_;  // by node
+  std::vector<model::LinearConstraint::Term> constrained_;
+  /// What each of them is the sum of: components of nodes that follow nothing.
+  std::vector<std::vector<model::LinearConstraint::Term>> resolved_;
   std::vector<int> link_of_;
   std::vector<Arm> arms_;   // by link
   std::vector<int> order_;  // of the links, leaders first

@@ -15,6 +15,7 @@
 #include <tautline/assembly/mass_options.hpp>
 #include <tautline/la/symmetric_matrix.hpp>
 #include <tautline/model/model.hpp>
+#include <tautline/model/rounding.hpp>
 #include <tautline/model/state.hpp>
 
 namespace tautline::assembly {
@@ -37,7 +38,7 @@ struct OutOfBalance {
 /// What acts on the model at one end of a stage, node by node, facet by facet, group by group.
 struct Acting {
   Points force, moment;              ///< dead nodal loads, of all kinds together [N], [N m]
-  Points line;                       ///< distributed dead load of each beam, in `force` already [N/m]
+  Points line;  ///< along each cable (of catenaries, without weight), then beam (in `force` already) [N/m]
   std::vector<double> pressure;      ///< on membranes, then shells [Pa]
   std::vector<double> temperature;   ///< change of cables, then beams, membranes, shells [K]
   Points temperature_gradient;       ///< of each beam [K/m]
@@ -75,6 +76,27 @@ struct Rest {
   std::vector<double> stiffness_factor;  ///< of the cables, see model::Cable
 };
 
+/// Which part of its law a cable follows: its own, or, whatever its strain, that of one side of where it goes
+/// slack.
+enum class Branch { own, taut, slack };
+
+/// @brief A ray of linear response from a state at rest.
+///
+/// Every element gets the response without the rigid motion in it: stresses without rotations. Theory:
+/// docs/theory/buckling.md
+struct Ray {
+  double lambda = 0;       ///< where on the ray
+  const la::Vector* way;   ///< response from rest to there; none where lambda is zero
+  const la::Vector* rate;  ///< response for a unit of lambda from there
+  double h = 0;            ///< part of a unit over which differences are taken
+};
+
+/// Tension of a cable that only pulls, as if it could push.
+struct Pull {
+  int cable = 0;
+  double rest = 0, rate = 0;  ///< [N]
+};
+
 /// @brief A finite-element model in motion: model, state, boundary.
 ///
 /// The model is held whole on every rank; elements, unknowns and factors are dealt out. A stage begins with
@@ -94,10 +116,8 @@ class System : public analysis::PathProblem {
   const Kinematics& kinematics() const noexcept { return kinematics_; }
   /// Diagonal of the box around the reference nodes [m].
   double size() const noexcept { return size_; }
-  /// Force that the rounding of the stiffest elements may leave out of balance [N].
-  double rounding_force() const noexcept { return rounding_force_; }
-  /// The same of cables and beams alone [N].
-  double rounding_force_of_lines() const noexcept { return rounding_force_of_lines_; }
+  /// What rounding may leave out of balance in the present state, as norms over the nodes. Collective.
+  model::Rounding rounding() const;
   int n_dofs() const noexcept { return 3 * map_.layout.total; }
   double assembly_seconds() const noexcept { return assembly_seconds_; }
 
@@ -140,14 +160,24 @@ class System : public analysis::PathProblem {
   la::Vector mean_motion(const std::vector<int>& nodes, const Vec3& direction) const;
   /// Moves the present state by an increment of the unknowns, e.g. along a mode. Collective.
   void move(const la::Vector& increment);
-  /// @brief Tangent in the present geometry with the stresses that `part` times a linear response adds, and
-  /// with what acts at lambda = `part`.
-  ///
-  /// Every element gets the response without the rigid motion in it: stresses without rotations. Theory:
-  /// docs/theory/buckling.md. Collective.
-  la::SymmetricMatrix stressed_tangent(const la::Vector& response, double part);
-  /// Largest deformation of an element in a linear response: change of its nodes' places over its size, or
-  /// rotation in rad, without the rigid motion. Collective.
+  /// Holds each cable that only pulls on a branch of its law; an empty list lets all follow their own.
+  void hold_branches(std::vector<Branch> branches);
+  /// Whether a membrane may wrinkle, so that its stiffness depends on where a load takes it.
+  bool may_wrinkle() const;
+  /// Tangent in the state at rest, membranes on the side to which the ray goes from its place. Collective.
+  la::SymmetricMatrix tangent_towards(const Ray& ray);
+  /// The same with the stresses at the ray's place. Collective.
+  la::SymmetricMatrix tangent_at(const Ray& ray);
+  /// Derivative of that along the ray, times 2 h; with cables on the branches that they are held on, and
+  /// membranes on the side to which the ray goes. Collective.
+  la::SymmetricMatrix stress_change(const Ray& ray);
+  /// Of each cable that only pulls, its tension at rest and for a unit of the ray, as if it could push.
+  std::vector<Pull> pulls(const la::Vector& rate, double h);
+  /// Largest strain of the members of each group for a unit of a linear response, free ones such as those of
+  /// temperature taken off. Collective.
+  std::vector<double> largest_strains(const la::Vector& response) const;
+  /// Largest deformation of an element in a linear response, without the rigid motion: change of its nodes'
+  /// places over its size, or rotation in rad; or the strain that the stage imposes, if larger. Collective.
   double largest_deformation(const la::Vector& response) const;
   /// Adds what moving supports go while lambda grows by one.
   void add_drives(la::Vector& x) const;
@@ -174,6 +204,8 @@ class System : public analysis::PathProblem {
   };
   /// Of the supports: internal minus external force, zero where nothing is held. Collective.
   NodalForces reactions() const;
+  /// Of linear constraints and of the neighbouring sectors of a cyclic structure. Collective.
+  NodalForces constraint_forces() const;
   /// Of the ground on the structure through grounded springs.
   NodalForces ground_springs() const;
   /// Of everything that acts in the present state: dead loads, pressure, weight. Collective.
@@ -192,6 +224,9 @@ class System : public analysis::PathProblem {
   /// Calls `visit(element)` for every element of this rank's share, in the model's order.
   template <class Visit>
   void for_each_own(const Visit& visit) const;
+  /// What an element adds at `state`, a cable on the branch that it is held on.
+  template <class Element, class Want>
+  auto answer(const model::State& state, const Element& element, Want want) const;
   /// Calls `visit(nodes, pressure)` for every facet of this rank's share under pressure.
   template <class Visit>
   void for_each_pressed(const Visit& visit) const;
@@ -201,8 +236,16 @@ class System : public analysis::PathProblem {
   void add_forces(const model::State& state, const Kinematics& at, std::vector<double>& force,
                   std::vector<double>& magnitude) const;
   std::vector<double> out_of_balance() const;
-  Acting acting(const Boundary& boundary) const;
+  /// Dead loads and pressure on every node; catenaries feel their weight themselves.
+  NodalForces external() const;
+  /// Internal less external force on every node, what links carry put to their leaders.
+  NodalForces nodal_residual() const;
+  /// What acts under the loads of `boundary` with these initial strains of the cables: dead loads of the
+  /// structure as drawn, wherever it is now.
+  Acting acting(const Boundary& boundary, const std::vector<double>& strains) const;
   void add_element_loads(const model::Load& load, Acting& to) const;
+  /// Compares what each load is by its definition with what acts of it. @throws std::logic_error if they differ
+  void audit_loads(const Boundary& boundary, const std::vector<double>& strains) const;
   void find_drives(const Boundary& boundary);
   void note_prescribed(const Boundary& boundary);
   /// Increments of all unknowns from the point accepted last to x; what supports prescribe is where lambda
@@ -219,14 +262,24 @@ class System : public analysis::PathProblem {
   std::span<const double> own_part(const std::vector<double>& all) const;
   std::vector<double> gathered(const std::vector<double>& own_complete) const;
   void apply(double lambda);
-  void find_rounding();
-  /// Calls `visit(nodes, rotations, force, tangent)` for all that resists on this rank, with an element's
-  /// state given by `state_of(element)`.
-  template <class StateOf, class Visit>
-  void for_each_stiffness(const StateOf& state_of, const Visit& visit) const;
-  /// Tangent with the element's state given by `state_of(element)`.
-  template <class StateOf>
-  void assemble_tangent(la::SymmetricMatrix& k, const StateOf& state_of);
+  /// Calls `visit(nodes, rotations, force, tangent)` for all that resists on this rank, with what each element
+  /// adds given by `contribution_of(element)`.
+  template <class ContributionOf, class Visit>
+  void for_each_stiffness(const ContributionOf& contribution_of, const Visit& visit) const;
+  model::Rounding rounding_beside(const Vec<2>& forces_and_moments) const;
+  /// Norms over the nodes of forces and of moments, of `value(block, component)` in this rank's blocks.
+  template <class Value>
+  Vec<2> norms_by_kind(const Value& value) const;
+  /// Tangent with what each element adds given by `contribution_of(element)`.
+  template <class ContributionOf>
+  void assemble_tangent(la::SymmetricMatrix& k, const ContributionOf& contribution_of);
+  /// Tangent with the stresses that `part` times a response adds, and with what acts at lambda = `part`;
+  /// `of_wrinkling(membrane)` is what membranes that may wrinkle add.
+  template <class OfWrinkling>
+  la::SymmetricMatrix stressed_tangent(const la::Vector& response, double part,
+                                       const OfWrinkling& of_wrinkling);
+  /// Largest strain that the stage imposes on an element by itself.
+  double largest_imposed_strain() const;
 
   model::Model model_;
   DofMap map_;
@@ -242,10 +295,9 @@ class System : public analysis::PathProblem {
   std::optional<std::vector<double>> wanted_strain_;
   double lambda_ = 1, driven_to_ = 0, committed_drive_ = 0, size_ = 1;
   double support_stiffness_ = 1;
-  double rounding_force_ = 0, rounding_moment_ = 0;  // of the stiffest elements
-  double rounding_force_of_lines_ = 0;
   mutable std::vector<double> magnitude_;  // of the last residual, all unknowns
   mutable double assembly_seconds_ = 0;
+  std::vector<Branch> branches_;  // of the cables, or none: their own
 };
 
 }  // namespace tautline::assembly

@@ -21,7 +21,7 @@ struct EigenPairs {
 ///
 /// That none is left out, multiple ones least of all, is shown by the inertia of K - s M on either side of
 /// those found.
-/// @throws LibraryError if fewer converge
+/// @throws ModelError if there are fewer; LibraryError if fewer converge
 EigenPairs solve_vibration(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count,
                            double shift = 0);
 

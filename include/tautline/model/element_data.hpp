@@ -47,8 +47,9 @@ inline CableData cable_data(const Model& model, const Cable& cable) {
 inline element::CatenaryProperties catenary_properties(const Model& model, const Cable& cable) {
   const Group& group = model.groups[cable.group];
   const double warm = 1 + group.thermal_expansion * cable.temperature_change;
-  return {model.axial_stiffness(cable), model.unstressed_length(cable) * warm,
-          group.cable.mass_per_length / warm};
+  const double length = model.unstressed_length(cable) * warm;
+  return {model.axial_stiffness(cable), length, group.cable.mass_per_length / warm,
+          cable.line_load * (model.reference_length(cable) / length)};
 }
 
 inline element::BeamGeometry beam_geometry(const Model& model, const Beam& beam) {

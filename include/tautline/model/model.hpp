@@ -71,6 +71,7 @@ struct Cable {
   int parent = 0;                 ///< index of the cable in the structure before subdivision
   double stiffness_factor = 1;    ///< its E A over that of the group
   double temperature_change = 0;  ///< mean, from the reference temperature, at present [K]
+  Vec3 line_load = Vec3::Zero();  ///< of a catenary: dead load per drawn length at present, no weight [N/m]
 };
 
 struct Beam {
@@ -139,6 +140,7 @@ struct LinearConstraint {
     double coefficient = 0;
   };
   std::vector<Term> terms;
+  SourceLocation where;  ///< in the deck, for messages
 };
 
 /// A named selection of nodes and elements; groups are selections by themselves and need none.
@@ -155,6 +157,9 @@ struct Support {
   std::array<bool, 6> fixed{true, true, true, true, true, true};
   Mat3 axes = Mat3::Identity();  ///< columns: the directions x, y, z that `fixed` means
 };
+
+/// "file:line:column: ", or nothing if no place in a deck is known.
+std::string prefix(const SourceLocation& where);
 
 /// What acts at full load factor. Forces and motions act on the nodes of the structure as described, whatever
 /// the mesh; line, surface and temperature loads on the elements of `on`.
@@ -174,6 +179,12 @@ struct Load {
   std::function<double(const Vec3&)> temperature_field;   ///< the same by place in the reference [K]; or none
   std::function<Vec3(const Vec3&)> temperature_gradient;  ///< of that field [K/m]; beams bend with it
   Vec3 acceleration = Vec3::Zero();  ///< body force per mass on the whole structure, e.g. gravity [m/s^2]
+  SourceLocation where;              ///< in the deck, for messages
+
+  bool moves() const { return displacement || rotation; }
+  bool heats() const { return temperature_change != 0 || temperature_field; }
+  /// 'load "name"', after its place in the deck if that is known.
+  std::string title() const;
 };
 
 /// The load `factor` times as large.
@@ -209,6 +220,8 @@ struct Model {
   int find_group(const std::string& name) const;
   /// All elements and nodes of a group or of a selection. @throws ModelError naming the nearest known name.
   Selection select(const std::string& name) const;
+  /// The same of several, every element and edge once.
+  Selection select(const std::vector<std::string>& names) const;
   /// Sorted, unique nodes of the named groups and selections (their elements' nodes and their own), the end
   /// of a beam on a hinge or offset replaced by the node it hangs on.
   std::vector<int> nodes_of(const std::vector<std::string>& names) const;

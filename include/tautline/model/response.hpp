@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <tautline/model/model.hpp>
+#include <tautline/model/rounding.hpp>
 #include <tautline/model/state.hpp>
 
 namespace tautline::model {
@@ -53,8 +54,10 @@ struct GroupSummary {
   double moment_max = 0;                        ///< beams, springs [N m]; shells [N]
   double principal_min = 0, principal_max = 0;  ///< membranes and shells [N/m]
   double force_max = 0;                         ///< springs [N]
+  Rounding rounding;                            ///< below which forces and moments mean nothing
 };
 
-std::map<std::string, GroupSummary> summarise_groups(const Model& model, const Response& response);
+std::map<std::string, GroupSummary> summarise_groups(const Model& model, const State& state,
+                                                     const Response& response);
 
 }  // namespace tautline::model

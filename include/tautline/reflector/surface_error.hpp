@@ -27,6 +27,7 @@ struct SurfaceError {
   double rms_direct = 0;    ///< without shift, unweighted over nodes [m]
   double rms_best_fit = 0;  ///< after the best six rigid motions and focal length, area-weighted, along z [m]
   double best_fit_focal_length = 0;  ///< [m]
+  bool best_fit_converged = true;    ///< else there are better ones
   double rms_area_weighted = 0;  ///< about its area-weighted mean (eq. 3.1), integrated over the facets, or
                                  ///< by length over the lines [m]
   double rms_area_weighted_direct = 0;  ///< the same without shift [m]

@@ -21,6 +21,8 @@ const nlohmann::ordered_json& entry(const nlohmann::ordered_json& list, std::siz
 Figure number(const nlohmann::ordered_json& value);
 /// A text as it is, any other scalar as JSON writes it, "" for null and for structures.
 std::string text(const nlohmann::ordered_json& value);
+/// An entry of results.json's `warnings` as a sentence.
+std::string warning_text(const nlohmann::ordered_json& warning);
 
 /// `scale` times the value with `digits` significant digits and a space before the unit; whole numbers
 /// without decimals; "-" if there is none.

@@ -1,11 +1,12 @@
-#include <fmt/format.h>
+#include <tautline/core/sha256.hpp>
 
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <deck/sha256.hpp>
 
-namespace tautline::deck {
+#include <fmt/format.h>
+
+namespace tautline {
 
 namespace {
 
@@ -64,4 +65,4 @@ std::string sha256(std::string_view bytes) {
   return digest;
 }
 
-}  // namespace tautline::deck
+}  // namespace tautline
