@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 command -v clang-format >/dev/null || { echo "format: clang-format is not installed (apt-get install clang-format)" >&2; exit 2; }
-mapfile -d '' files < <(find include src tests \( -name '*.hpp' -o -name '*.cpp' \) -print0 | sort -z)
+mapfile -d '' files < <(find include src tests verification/metamorphic \( -name '*.hpp' -o -name '*.cpp' \) -print0 | sort -z)
 
 if [ "${1:-}" != --check ]; then
   clang-format -i "${files[@]}"

@@ -7,18 +7,11 @@
 #include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
-
-#include "assembly/rotation.hpp"
+#include <tautline/core/rotation.hpp>
 
 namespace tautline::assembly {
 
 namespace {
-
-Mat3 skew(const Vec3& v) {
-  Mat3 matrix;
-  matrix << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
-  return matrix;
-}
 
 using Term = model::LinearConstraint::Term;
 
@@ -72,7 +65,8 @@ class ConstraintSolver {
   void resolve(std::size_t index) {
     const auto& constraint = model_.constraints[index];
     if (mark_[index] == Mark::begun)
-      refuse(constraint, constrained[index].node, "follows itself, through this constraint or a ring of them");
+      refuse(constraint, constrained[index].node,
+             "follows itself, through this constraint or a ring of them");
     if (mark_[index] == Mark::done) return;
     mark_[index] = Mark::begun;
     const double first = constraint.terms.front().coefficient;
@@ -151,13 +145,19 @@ Kinematics::Kinematics(const model::Model& model, const DofMap& map)
       frame_(static_cast<std::size_t>(map.layout.total), Mat3::Identity()),
       displacement_(model.nodes.size()),
       rotation_(model.nodes.size()),
+      charted_(model.nodes.size(), false),
+      charted_node_(static_cast<std::size_t>(map.layout.total), -1),
+      tilt_(model.nodes.size(), Vec3::Zero()),
       link_of_(model.nodes.size(), -1),
+      cyclic_of_(model.nodes.size(), -1),
       arms_(model.links.size()),
       order_(model::links_in_order(model)) {
   for (std::size_t i = 0; i < model.links.size(); ++i)
     link_of_[model.links[i].follower] = static_cast<int>(i);
+  for (std::size_t i = 0; i < model.cyclic_pairs.size(); ++i)
+    cyclic_of_[model.cyclic_pairs[i].follower] = static_cast<int>(i);
   resolve_constraints();
-  hold({});
+  hold({}, {});
   linearise(model::State::reference(model));
 }
 
@@ -167,7 +167,7 @@ void Kinematics::resolve_constraints() {
   resolved_ = std::move(solver.resolved);
 }
 
-void Kinematics::hold(const std::vector<model::Support>& supports) {
+void Kinematics::hold(const std::vector<model::Support>& supports, const std::set<int>& turned) {
   std::vector<HeldDirections> directions(frame_.size());
   for (const auto& support : supports)
     for (const int node : support.nodes)
@@ -200,7 +200,11 @@ void Kinematics::hold(const std::vector<model::Support>& supports) {
   }
   for (std::size_t node = 0; node < plain_.size(); ++node) {
     const int u = map_->displacement_block[node], r = map_->rotation_block[node];
-    plain_[node] = u >= 0 && frame_[u] == Mat3::Identity() && (r < 0 || frame_[r] == Mat3::Identity());
+    const int n = held_rotations(static_cast<int>(node));
+    charted_[node] = n == 1 || (n == 2 && turned.contains(static_cast<int>(node)));
+    if (r >= 0) charted_node_[r] = charted_[node] ? static_cast<int>(node) : -1;
+    plain_[node] = !charted_[node] && u >= 0 && frame_[u] == Mat3::Identity() &&
+                   (r < 0 || frame_[r] == Mat3::Identity());
   }
   for (const auto& first : constrained_) plain_[first.node] = false;
   find_fixed_dependences();
@@ -233,8 +237,79 @@ void Kinematics::find_fixed_dependences() {
   }
 }
 
+bool Kinematics::turns_by_itself(int node) const {
+  const int link = link_of(node);
+  return map_->rotation_block[static_cast<std::size_t>(node)] >= 0 &&
+         (link < 0 || model_->links[static_cast<std::size_t>(link)].hinge.empty());
+}
+
+int Kinematics::held_rotations(int node) const {
+  if (!turns_by_itself(node)) return 0;
+  const auto at = 3 * static_cast<std::size_t>(map_->rotation_block[static_cast<std::size_t>(node)]);
+  return held_[at] + held_[at + 1] + held_[at + 2];
+}
+
+Vec3 Kinematics::held_part(int block, const Vec3& vector) const {
+  Vec3 in_axes = frame(block).transpose() * vector;
+  for (int c = 0; c < 3; ++c)
+    if (!held_[static_cast<std::size_t>(3 * block + c)]) in_axes[c] = 0;
+  return frame(block) * in_axes;
+}
+
+Vec3 Kinematics::tilt(const model::State& state, int node) const {
+  const auto at = static_cast<std::size_t>(node);
+  const Vec3 whole = rotation_vector(state.rotation[at] * rotation_of(state.turn[at]).transpose());
+  return whole - held_part(map_->rotation_block[at], whole);
+}
+
+void Kinematics::settle(model::State& state) const {
+  constexpr double same = 1e-9;
+  for (std::size_t node = 0; node < charted_.size(); ++node) {
+    const int n = held_rotations(static_cast<int>(node)), block = map_->rotation_block[node];
+    if (n == 0) continue;
+    const Mat3& rotation = state.rotation[node];
+    Vec3& turn = state.turn[node];
+    if (n == 3) {
+      turn = nearest_rotation_vector(rotation, turn);
+      continue;
+    }
+    turn = held_part(block, turn);
+    const Vec3 left = rotation_vector(rotation * rotation_of(turn).transpose());
+    if (held_part(block, left).norm() <= same) continue;
+    for (int c = 0; c < 3; ++c) {
+      const bool held = held_[static_cast<std::size_t>(3 * block + c)];
+      const Vec3 axis = frame(block).col(c);
+      if (held && n == 1)
+        turn = nearest_rotation_vector(rotation_of(twist_about(rotation, axis) * axis), turn);
+      if (!held && n == 2)
+        turn = held_part(block, nearest_rotation_vector(
+                                    rotation_of(-twist_about(rotation, axis) * axis) * rotation, turn));
+    }
+  }
+}
+
+void Kinematics::find_charts(const model::State& state) {
+  for (std::size_t node = 0; node < charted_.size(); ++node) {
+    if (!charted_[node]) continue;
+    const int block = map_->rotation_block[node];
+    tilt_[node] = tilt(state, static_cast<int>(node));
+    const Mat3 free = spin_of_rotation_vector(tilt_[node]),
+               held = rotation_of(tilt_[node]) * spin_of_rotation_vector(state.turn[node]);
+    Mat3 spin;
+    for (int c = 0; c < 3; ++c)
+      spin.col(c) = (held_[static_cast<std::size_t>(3 * block + c)] ? held : free) * frame(block).col(c);
+    rotation_[node] = {{block, spin}};
+  }
+  for (const auto& pair : model_->cyclic_pairs)
+    if (charted_[pair.leader]) {
+      const auto& [block, spin] = rotation_[pair.leader].front();
+      rotation_[pair.follower] = {{block, pair.turn * spin}};
+    }
+}
+
 void Kinematics::linearise(const model::State& state) {
   const auto& m = *map_;
+  find_charts(state);
   for (const int i : order_) {
     const auto& link = model_->links[i];
     auto& arm = arms_[i];
@@ -272,14 +347,57 @@ model::State Kinematics::moved(const model::State& from, const std::vector<doubl
     const int u = map_->displacement_block[node], r = map_->rotation_block[node];
     if (u >= 0) state.displacement[node] += increment(u);
     if (r < 0) continue;
-    const int link = link_of_[node];
-    if (link >= 0 && !model_->links[link].hinge.empty())
-      state.hinge_angle[link] += increment(r);
+    if (turns_by_itself(static_cast<int>(node)))
+      turn_node(state, static_cast<int>(node), increment(r));
     else
-      state.rotation[node] = rotation_of(increment(r)) * state.rotation[node];
+      state.hinge_angle[link_of_[node]] += increment(r);
   }
   carry_followers(state);
   return state;
+}
+
+void Kinematics::turn_node(model::State& state, int node, const Vec3& increment) const {
+  const auto at = static_cast<std::size_t>(node);
+  Mat3& rotation = state.rotation[at];
+  Vec3& turn = state.turn[at];
+  if (charted_[at]) {
+    const Vec3 prescribed = held_part(map_->rotation_block[at], increment);
+    const Vec3 tilt_now = tilt(state, node) + increment - prescribed;
+    turn += prescribed;
+    rotation = rotation_of(tilt_now) * rotation_of(turn);
+    return;
+  }
+  rotation = rotation_of(increment) * rotation;
+  if (held_rotations(node) == 3 && !increment.isZero(0))
+    turn = nearest_rotation_vector(rotation, turn + increment);
+}
+
+Vec3 Kinematics::unknown_of(int block, const Vec3& value) const {
+  const int node = charted_node_[static_cast<std::size_t>(block)];
+  if (node < 0) return in_axes(block, value);
+  return rotation_[static_cast<std::size_t>(node)].front().matrix.colPivHouseholderQr().solve(value);
+}
+
+Mat3 Kinematics::curvature(int node, const Vec3& moment) const {
+  const auto at = static_cast<std::size_t>(node);
+  if (!charted_[at]) return Mat3::Zero();
+  const Mat3& axes = frame(map_->rotation_block[at]);
+  return axes.transpose() * spin_curvature(tilt_[at], moment) * axes;
+}
+
+Mat3 Kinematics::reaction_axes(int node) const {
+  const auto at = static_cast<std::size_t>(node);
+  if (!charted_[at] || held_rotations(node) != 1) return Mat3::Identity();
+  return rotation_of(tilt_[at] / 2);
+}
+
+Kinematics Kinematics::in_nodal_spins(const model::State& state) const {
+  Kinematics result = *this;
+  std::fill(result.charted_.begin(), result.charted_.end(), false);
+  std::fill(result.charted_node_.begin(), result.charted_node_.end(), -1);
+  result.find_fixed_dependences();
+  result.linearise(state);
+  return result;
 }
 
 void Kinematics::carry_followers(model::State& state) const {

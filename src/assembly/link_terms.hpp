@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// What rigid arms and hinges add to a tangent. Theory: docs/theory/constraints.md#second-derivative
+/// What rigid arms, hinges and held rotations add to a tangent. Theory:
+/// docs/theory/constraints.md#second-derivative
 
 #include <tautline/assembly/dof_map.hpp>
 #include <tautline/assembly/kinematics.hpp>
@@ -10,7 +11,8 @@
 
 namespace tautline::assembly {
 
-/// Adds to a matrix in unknowns what forces on followers add through their arms and hinges.
+/// Adds to a matrix in unknowns what forces on followers add through their arms and hinges, and moments on
+/// nodes whose rotations are held in part.
 class LinkTerms {
  public:
   LinkTerms(const Kinematics& kinematics, const DofMap& map, const model::Model& model,
@@ -34,6 +36,7 @@ class LinkTerms {
   /// A follower hands its force on to its leader, which may follow another.
   void add(int node, const Vec3& f, const Vec3& m) {
     const int index = kinematics_.link_of(node);
+    if (index < 0 || model_.links[static_cast<std::size_t>(index)].rotation_free) add_own(node, m);
     if (index < 0) return;
     const auto& link = model_.links[static_cast<std::size_t>(index)];
     const Mat<6> h = kinematics_.second_derivative(index, f, m);
@@ -52,6 +55,17 @@ class LinkTerms {
     }
     if (b >= 0) matrix_.block<3, 3>(b, b) += h.bottomRightCorner<3, 3>();
     add(link.leader, f, kinematics_.lever(index).cross(f) + (link.rotation_free ? Vec3(Vec3::Zero()) : m));
+  }
+
+  /// Of the moment on a node that turns by itself, or with the node that leads it round an axis.
+  void add_own(int node, const Vec3& m) {
+    if (const int index = kinematics_.cyclic_of(node); index >= 0) {
+      const auto& pair = model_.cyclic_pairs[static_cast<std::size_t>(index)];
+      return add_own(pair.leader, pair.turn.transpose() * m);
+    }
+    if (!kinematics_.charted(node) || m.isZero(0)) return;
+    const int a = 3 * expansion_.place_of(map_.rotation_block[static_cast<std::size_t>(node)]);
+    matrix_.block<3, 3>(a, a) += kinematics_.curvature(node, m);
   }
 
   const Kinematics& kinematics_;

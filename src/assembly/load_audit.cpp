@@ -18,7 +18,8 @@ using namespace model;
 
 namespace {
 
-/// A piece of an element: where it is, its length or area, and of facets the area as a vector along the normal.
+/// A piece of an element: where it is, its length or area, and of facets the area as a vector along the
+/// normal.
 struct Piece {
   Vec3 at;
   double size = 0;
@@ -67,7 +68,8 @@ void add_facets(const Model& model, const Selection& selected, const Load& load,
   for (const int i : selected.shells) add(model.shells[i].nodes);
 }
 
-void add_weight(const Model& model, const std::vector<double>& strains, const Vec3& acceleration, LoadSum& sum) {
+void add_weight(const Model& model, const std::vector<double>& strains, const Vec3& acceleration,
+                LoadSum& sum) {
   const auto add = [&](const Piece& piece, double density) {
     sum.add(piece.at, density * piece.size * acceleration);
   };
@@ -77,7 +79,8 @@ void add_weight(const Model& model, const std::vector<double>& strains, const Ve
   for (const auto& beam : model.beams)
     add(middle_of(model, beam.nodes), beam_section(model, beam).mass_per_length);
   for (const auto& m : model.membranes)
-    for (const Piece& piece : pieces_of(model, m.nodes)) add(piece, model.groups[m.group].membrane.mass_per_area);
+    for (const Piece& piece : pieces_of(model, m.nodes))
+      add(piece, model.groups[m.group].membrane.mass_per_area);
   for (const auto& s : model.shells)
     for (const Piece& piece : pieces_of(model, s.nodes))
       add(piece, model.groups[s.group].shell.density * model.groups[s.group].shell.thickness);
@@ -155,9 +158,10 @@ std::vector<RigidMotion> rigid_motions(const Model& model, double size) {
       allowed = allowed && std::abs(sum) <= small * most;
     }
     for (const auto& pair : model.cyclic_pairs)
-      allowed = allowed && (motion.at(model.nodes[pair.follower]) -
-                            pair.turn * motion.at(model.nodes[pair.leader]))
-                                   .norm() <= small;
+      allowed =
+          allowed &&
+          (motion.at(model.nodes[pair.follower]) - pair.turn * motion.at(model.nodes[pair.leader])).norm() <=
+              small;
     if (allowed) motions.push_back(motion);
   }
   return motions;
@@ -202,8 +206,8 @@ std::vector<double> assembled(const Model& model, const DofMap& map, const Kinem
 }
 
 /// Virtual work of forces on the unknowns in a rigid motion of the structure as drawn.
-double work_of(const std::vector<double>& force, const Model& model, const DofMap& map, const Kinematics& drawn,
-               const RigidMotion& motion) {
+double work_of(const std::vector<double>& force, const Model& model, const DofMap& map,
+               const Kinematics& drawn, const RigidMotion& motion) {
   double sum = 0;
   const auto add = [&](int block, const Vec3& increment) {
     if (block < 0) return;
@@ -215,6 +219,10 @@ double work_of(const std::vector<double>& force, const Model& model, const DofMa
     const int link = drawn.link_of(static_cast<int>(node));
     const bool is_hinge = link >= 0 && !model.links[static_cast<std::size_t>(link)].rotation_free;
     if (!is_hinge) add(map.rotation_block[node], motion.spin);
+  }
+  for (const auto& first : drawn.constrained()) {  // moves by the others alone
+    const int unknown = 3 * map.displacement_block[first.node] + first.component;
+    sum -= force[static_cast<std::size_t>(unknown)] * motion.at(model.nodes[first.node])[first.component];
   }
   return sum;
 }
@@ -241,13 +249,13 @@ void System::audit_loads(const Boundary& boundary, const std::vector<double>& st
   constexpr double rounding = 1e-10;
   if (boundary.loads.empty()) return;
   Kinematics drawn(model_, map_);
-  drawn.hold(boundary.supports);
+  drawn.hold(boundary.supports, {});
   const auto motions = rigid_motions(model_, size_);
   const auto compare = [&](const Load& load, const char* what, double defined, double found, double size) {
     if (!(std::abs(found - defined) <= rounding * size))
       throw std::logic_error(
-          fmt::format("{}: {} is {:.10g} by its definition, but {:.10g} acts on the structure", load.title(), what,
-                      defined, found));
+          fmt::format("{}: {} is {:.10g} by its definition, but {:.10g} acts on the structure", load.title(),
+                      what, defined, found));
   };
   for (auto first = boundary.loads.begin(), last = first; first != boundary.loads.end(); first = last) {
     LoadSum sum;
@@ -286,8 +294,7 @@ void check_motions(const Boundary& boundary, const DofMap& map, const Kinematics
           if (first.node == node && (*load.displacement)[first.component] != 0)
             refuse(load, node, "which follows from a linear constraint in that direction: move the others");
       const int link = kinematics.link_of(node);
-      if (load.rotation && link >= 0 && map.rotation_block[node] >= 0 &&
-          !kinematics.rotation_is_free(link))
+      if (load.rotation && link >= 0 && map.rotation_block[node] >= 0 && !kinematics.rotation_is_free(link))
         refuse(load, node, "which turns about a hinge of another node: turn that one");
     }
 }

@@ -21,7 +21,8 @@ struct LoadSum {
   void add(const Vec3& at, const Vec3& force, const Vec3& moment = Vec3::Zero());
 };
 
-/// @brief Adds the resultant of a load on the structure as drawn, from what the deck says of it and the geometry.
+/// @brief Adds the resultant of a load on the structure as drawn, from what the deck says of it and the
+/// geometry.
 ///
 /// Shares no code with assembly. A load along a catenary counts in the middle of the chord.
 /// @param[in] strains  initial strains of the cables, by which the weight of a drawn length goes

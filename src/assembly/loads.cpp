@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
-#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -87,8 +85,9 @@ double mean_over(const std::function<double(const Vec3&)>& field, const Model& m
   return (field(a) + 4 * field((a + b) / 2) + field(b)) / 6;
 }
 
-/// Mean of a field over a facet, exact up to the second power of the place on a plane one: of the middles of a
-/// triangle's sides; of the points of Gauss's rule of a quadrilateral, each with the area that it stands for.
+/// Mean of a field over a facet, exact up to the second power of the place on a plane one: of the middles of
+/// a triangle's sides; of the points of Gauss's rule of a quadrilateral, each with the area that it stands
+/// for.
 double mean_over(const std::function<double(const Vec3&)>& field, const Model& model,
                  const FacetNodes& nodes) {
   const auto x = [&](std::size_t i) -> const Vec3& { return model.nodes[nodes[static_cast<int>(i)]]; };
@@ -123,8 +122,8 @@ void add_temperature(const Model& model, const std::vector<Element>& elements,
     const auto& nodes = elements[static_cast<std::size_t>(i)].nodes;
     const double mean = mean_over(load.temperature_field, model, nodes);
     if (!std::isfinite(mean))
-      throw ModelError(fmt::format("{}: temperature_field has no value within the element at node {}", load.title(),
-                                   *std::begin(nodes) + 1));
+      throw ModelError(fmt::format("{}: temperature_field has no value within the element at node {}",
+                                   load.title(), *std::begin(nodes) + 1));
     change += mean;
   }
 }
@@ -144,10 +143,10 @@ void add_temperatures(const Model& model, const Selection& selected, const Load&
     const auto& [a, b] = model.beams[i].nodes;
     const Vec3 middle = (model.nodes[a] + model.nodes[b]) / 2, gradient = load.temperature_gradient(middle);
     if (!gradient.allFinite())
-      throw ModelError(fmt::format(
-          "{}: temperature_field has no slope at ({:.4g}, {:.4g}, {:.4g}), the middle of a "
-          "beam, which bends with it",
-          load.title(), middle.x(), middle.y(), middle.z()));
+      throw ModelError(
+          fmt::format("{}: temperature_field has no slope at ({:.4g}, {:.4g}, {:.4g}), the middle of a "
+                      "beam, which bends with it",
+                      load.title(), middle.x(), middle.y(), middle.z()));
     to.temperature_gradient[static_cast<std::size_t>(i)] += gradient;
   }
 }
@@ -201,49 +200,6 @@ Acting System::acting(const Boundary& boundary, const std::vector<double>& strai
   }
   add_weights(model_, result);
   return result;
-}
-
-void System::find_drives(const Boundary& boundary) {
-  struct Target {
-    Vec3 value = Vec3::Zero();
-    std::string load;
-  };
-  std::map<int, Target> displacements, rotations;  // by node; several loads add up
-  for (const auto& load : boundary.loads) {
-    if (!load.displacement && !load.rotation) continue;
-    auto nodes = model_.nodes_of(load.on);  // of the mesh: whole edges move
-    nodes.insert(nodes.end(), load.nodes.begin(), load.nodes.end());
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    const auto add = [&](const std::optional<Vec3>& motion, std::map<int, Target>& to) {
-      if (!motion) return;
-      for (const int node : nodes) {
-        to[node].value += *motion;
-        to[node].load = load.name;
-      }
-    };
-    add(load.displacement, displacements);
-    add(load.rotation, rotations);
-  }
-  drives_.clear();
-  const auto drive = [&](int node, int block, const Target& target, const Vec3& so_far) {
-    const Vec3 wish = block < 0 ? target.value : kinematics_.unknown_of(block, target.value);
-    const Vec3 way = block < 0 ? wish : kinematics_.unknown_of(block, target.value - so_far);
-    Drive found{block, Vec3::Zero()};
-    for (int c = 0; c < 3; ++c) {
-      if (block >= 0 && held()[static_cast<std::size_t>(3 * block + c)])
-        found.way[c] = way[c];
-      else if (std::abs(wish[c]) > 1e-12 * target.value.norm())
-        throw ModelError(fmt::format(
-            "load \"{}\" moves node {} in a direction that no support holds: only a support can be moved, so "
-            "add that direction to a support of the node",
-            target.load, node + 1));
-    }
-    if (!found.way.isZero(0)) drives_.push_back(found);
-  };
-  for (const auto& [node, target] : displacements)
-    drive(node, map_.displacement_block[node], target, state_.displacement[node]);
-  for (const auto& [node, target] : rotations) drive(node, map_.rotation_block[node], target, turned_[node]);
 }
 
 System::NodalForces System::ground_springs() const {

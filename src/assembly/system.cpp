@@ -54,7 +54,6 @@ System::System(model::Model model)
       kinematics_(model_, map_),
       state_(model::State::initial(model_)),
       committed_(state_),
-      turned_(model_.nodes.size(), Vec3::Zero()),
       size_(bounding_size(model_)) {
   const auto mine = [&](const auto& elements, std::vector<int>& indices) {
     for (int i = 0; i < static_cast<int>(elements.size()); ++i) {
@@ -94,7 +93,6 @@ void System::set_state(const model::State& state, const std::vector<double>& str
 
 void System::reset() {
   set_state(model::State::initial(model_));
-  std::fill(turned_.begin(), turned_.end(), Vec3::Zero());
   start_ = end_ = now_ = acting({}, now_.strain);
 }
 
@@ -103,11 +101,8 @@ std::vector<double> System::strains() const {
 }
 
 OutOfBalance System::begin_stage(const Boundary& boundary) {
-  for (const auto& drive : drives_)
-    for (std::size_t node = 0; node < turned_.size(); ++node)
-      if (map_.rotation_block[node] == drive.block)
-        turned_[node] += kinematics_.frame(drive.block) * drive.way * driven_to_;
-  kinematics_.hold(boundary.supports);
+  kinematics_.hold(boundary.supports, turned_nodes(boundary));
+  kinematics_.settle(state_);
   kinematics_.linearise(state_);
   start_ = now_;
   end_ = acting(boundary, wanted_strain_.value_or(start_.strain));

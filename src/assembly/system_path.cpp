@@ -119,19 +119,14 @@ double System::drive_size(double rotation_weight) const {
 }
 
 Rest System::rest() const {
-  Rest result{state_, now_, turned_, {}};
+  Rest result{state_, now_, {}};
   for (const auto& cable : model_.cables) result.stiffness_factor.push_back(cable.stiffness_factor);
-  for (const auto& drive : drives_)
-    for (std::size_t node = 0; node < turned_.size(); ++node)
-      if (map_.rotation_block[node] == drive.block)
-        result.turned[node] += kinematics_.frame(drive.block) * drive.way * driven_to_;
   return result;
 }
 
 void System::restore(const Rest& rest) {
   set_state(rest.state);
   set_stiffness_factors(rest.stiffness_factor);
-  turned_ = rest.turned;
   driven_to_ = committed_drive_ = 0;
   start_ = end_ = now_ = rest.acting;
   std::fill(start_residual_.begin(), start_residual_.end(), 0.0);

@@ -59,12 +59,12 @@ double System::second_variation(const la::Vector& x) const {
   };
   add_pressure(model_.membranes, 0);
   add_pressure(model_.shells, model_.membranes.size());
-  for (const auto& link : model_.links) {
-    if (map_.node_rank[link.follower] != la::rank()) continue;
-    const bool turns = map_.rotational[link.follower];
+  for (int at = 0; at < static_cast<int>(model_.nodes.size()); ++at) {
+    if (map_.node_rank[at] != la::rank() || !load_bends(at)) continue;
+    const bool turns = map_.rotational[at];
     Vec<6> load;
-    load << -now_.force[link.follower], -now_.moment[link.follower];
-    const std::array<int, 1> node{link.follower};
+    load << -now_.force[at], -now_.moment[at];
+    const std::array<int, 1> node{at};
     add_links(Expansion(kinematics_, map_, node, turns), node, turns, load);
   }
   return la::sum_over_ranks(sum);
@@ -130,8 +130,15 @@ double System::relative_size(const la::Vector& increment) const {
   return la::max_over_ranks(largest) / size_;
 }
 
+std::vector<double> System::nodal_imbalance() const {
+  if (!kinematics_.any_charted()) return out_of_balance();
+  std::vector<double> force(origin_.size(), 0.0), magnitude(origin_.size(), 0.0);
+  add_forces(state_, kinematics_.in_nodal_spins(state_), force, magnitude);
+  return gathered(force);
+}
+
 System::NodalForces System::reactions() const {
-  const auto residual = out_of_balance();
+  const auto residual = nodal_imbalance();
   NodalForces result{Points(model_.nodes.size(), Vec3::Zero()), Points(model_.nodes.size(), Vec3::Zero())};
   const auto held_part = [&](int block) -> Vec3 {
     Vec3 value = Vec3::Zero();
@@ -140,12 +147,21 @@ System::NodalForces System::reactions() const {
         value[c] = residual[static_cast<std::size_t>(3 * block + c)];
     return kinematics_.frame(block) * value;
   };
+  const auto moment_part = [&](int node, int block) -> Vec3 {
+    const Mat3 axes = kinematics_.reaction_axes(node), frame = axes * kinematics_.frame(block);
+    const Vec3 whole =
+        kinematics_.frame(block) * Eigen::Map<const Vec3>(&residual[static_cast<std::size_t>(3 * block)]);
+    Vec3 value = frame.transpose() * whole;
+    for (int c = 0; c < 3; ++c)
+      if (!held()[static_cast<std::size_t>(3 * block + c)]) value[c] = 0;
+    return frame * value;
+  };
   for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
     if (map_.displacement_block[node] >= 0) result.force[node] = held_part(map_.displacement_block[node]);
     const int link = kinematics_.link_of(static_cast<int>(node));
     const bool is_hinge = link >= 0 && !model_.links[static_cast<std::size_t>(link)].rotation_free;
     if (map_.rotation_block[node] >= 0 && !is_hinge)
-      result.moment[node] = held_part(map_.rotation_block[node]);
+      result.moment[node] = moment_part(static_cast<int>(node), map_.rotation_block[node]);
   }
   for (const auto& first : kinematics_.constrained())  // what holds it is no support
     result.force[first.node][first.component] = 0;
@@ -183,8 +199,9 @@ System::NodalForces System::nodal_residual() const {
 System::NodalForces System::constraint_forces() const {
   NodalForces result{Points(model_.nodes.size(), Vec3::Zero()), Points(model_.nodes.size(), Vec3::Zero())};
   const auto residual = out_of_balance();
-  for (const auto& constraint : model_.constraints) {
-    const auto& first = constraint.terms.front();
+  for (std::size_t i = 0; i < model_.constraints.size(); ++i) {
+    const auto& constraint = model_.constraints[i];
+    const auto& first = kinematics_.constrained()[i];
     const int block = map_.displacement_block[first.node];
     const double multiplier =
         residual[static_cast<std::size_t>(3 * block + first.component)] / first.coefficient;

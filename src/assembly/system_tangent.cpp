@@ -16,7 +16,7 @@
 #include "assembly/expansion.hpp"
 #include "assembly/link_terms.hpp"
 #include "assembly/own_elements.hpp"
-#include "assembly/rotation.hpp"
+#include <tautline/core/rotation.hpp>
 
 namespace tautline::assembly {
 
@@ -181,6 +181,12 @@ class WrinklingOnRay {
 
 }  // namespace
 
+bool System::load_bends(int node) const {
+  const bool follows = kinematics_.link_of(node) >= 0;
+  const bool by_moment = follows || kinematics_.cyclic_of(node) >= 0 || kinematics_.charted(node);
+  return (follows && !now_.force[node].isZero(0)) || (by_moment && !now_.moment[node].isZero(0));
+}
+
 template <class ContributionOf, class Visit>
 void System::for_each_stiffness(const ContributionOf& contribution_of, const Visit& visit) const {
   for_each_own([&](const auto& element) {
@@ -193,14 +199,13 @@ void System::for_each_stiffness(const ContributionOf& contribution_of, const Vis
     c.tangent = -c.tangent;
     visit(nodes, false, c.force, c.tangent);
   });
-  for (const auto& link : model_.links) {  // dead loads at the end of an arm
-    const auto& [force, moment] = std::pair(now_.force[link.follower], now_.moment[link.follower]);
-    if (force.isZero(0) && moment.isZero(0)) continue;
-    const bool turns = map_.rotational[link.follower];
+  for (int node = 0; node < static_cast<int>(model_.nodes.size()); ++node) {
+    if (!load_bends(node)) continue;
+    const bool turns = map_.rotational[node];
     Vec<6> load;
-    load << -force, -moment;
+    load << -now_.force[node], -now_.moment[node];
     ElementMatrix none = ElementMatrix::Zero(turns ? 6 : 3, turns ? 6 : 3);
-    visit(std::array<int, 1>{link.follower}, turns, load, none);
+    visit(std::array<int, 1>{node}, turns, load, none);
   }
 }
 

@@ -305,8 +305,9 @@ void add_net_keys(Builder& b) {
       .refers("membrane group")
       .by_default("all membrane groups with methods film and dynamic_relaxation, else none")
       .says(
-          "Membranes whose prestress, one number, is a part of the balance of the nodes; on a reflector the "
-          "rear net is given what the cloth carries in front.");
+          "Membranes whose prestress is a part of the balance of the nodes, one number but for methods film "
+          "and "
+          "dynamic_relaxation; on a reflector the rear net is given what the cloth carries in front.");
   b.choice("frame", &Options::frame,
            std::vector<std::pair<std::string, FrameKind>>{{"rigid", FrameKind::rigid},
                                                           {"elastic", FrameKind::elastic},
@@ -353,7 +354,7 @@ void add_method_keys(Builder& b) {
           "for given force densities; balanced: for force densities that balance the net where it is drawn, "
           "as well as can be, with tensions near those of the groups; constraints: any "
           "mixture of demands; elastic: for unstressed lengths, by Newton's method; dynamic_relaxation: for "
-          "unstressed lengths, constant tensions and films; film: soap films with cables.");
+          "unstressed lengths, constant tensions and films; film: films of given stress with cables.");
   b.choice("solver", &Options::solver,
            std::vector<std::pair<std::string, FormSolver>>{{"automatic", FormSolver::automatic},
                                                            {"smallest_norm", FormSolver::smallest_norm},

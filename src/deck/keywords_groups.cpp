@@ -120,10 +120,12 @@ Block make_group() {
       .in("Pa")
       .says("Membranes and shells: instead of `prestress`, the stress; the section has a thickness.");
   b.key("orientation", &Options::orientation)
+      .by_default("beams: [0, 0, 1]")
       .says(
-          "Beams: local axis 3 lies in the plane of the beam and this vector. Membranes and shells: axis 1 "
-          "of "
-          "orthotropic material and of unequal prestress is its projection on them.");
+          "Beams: local axis 3 lies in the plane of the beam and this vector; for a beam that is parallel to "
+          "it, of the beam and [0, 0, 1], or [1, 0, 0] if it is vertical. Membranes and shells: axis 1 of "
+          "orthotropic material and of unequal prestress is its projection on them; without it that of x, or "
+          "of z where they stand across x.");
   b.custom("release_start", Type::releases, release_reader(&Options::release_start))
       .says(
           "Beams: rotations free at the first node: all (a ball joint), or a list of torsion, bending_2, "

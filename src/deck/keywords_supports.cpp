@@ -22,6 +22,7 @@ void read_fix(Reader& reader, const Keyword& keyword, const Node& node, model::S
   }
   if (node.is_scalar() && node.text == "symmetry") {
     options.fixed = {true, false, false, false, true, true};
+    options.symmetry = true;
     return;
   }
   if (node.is_scalar())
@@ -46,6 +47,13 @@ void check_not_empty(Reader& reader, const Node& node) {
     reader.complain(*on, "\"on\" is an empty list", "expected at least one group or selection");
 }
 
+/// Unit vector normal to a unit vector and horizontal; [0, 1, 0] where that is vertical but for rounding.
+Vec3 horizontal_normal(const Vec3& e1) {
+  constexpr double rounding = 1e-10;
+  if (std::hypot(e1.x(), e1.y()) < rounding) return Vec3::UnitY();
+  return Vec3::UnitZ().cross(e1).normalized();
+}
+
 /// Axes from a first direction and a second in the plane of the first two.
 void set_axes(Reader& reader, const Node& node, model::SupportOptions& options) {
   const Node *x = node.find("x_axis"), *y = node.find("y_axis");
@@ -57,7 +65,7 @@ void set_axes(Reader& reader, const Node& node, model::SupportOptions& options) 
   if (first.isZero(0))
     return reader.complain(*x, "x_axis has no direction", "expected a vector that is not zero");
   const Vec3 e1 = first.normalized();
-  Vec3 across = y != nullptr ? second : Vec3::Unit(std::abs(e1[2]) < 0.9 ? 2 : 0).cross(e1);
+  Vec3 across = y != nullptr ? second : horizontal_normal(e1);
   across -= e1 * e1.dot(across);
   if (across.norm() <= 1e-9 * second.norm())
     return reader.complain(*y, "y_axis is parallel to x_axis", "expected another direction");
@@ -74,8 +82,9 @@ Block make_support() {
       .by_default("all")
       .says(
           "Fixed directions: all (displacements and rotations), pinned (x, y, z), symmetry (x, ry, rz: a "
-          "plane of "
-          "symmetry normal to x), or a list.");
+          "plane of symmetry normal to x, beyond which shells go on as their mirror image, normals "
+          "included), or a list. Of rotations those components of the node's rotation vector are held: what "
+          "is left free is a rotation vector along the other axes.");
   b.custom("x_axis", Type::vector,
            [](Reader& reader, const Keyword& keyword, const Node& node, Options& options) {
              if (const auto v = reader.vector(keyword, node)) options.axes.col(0) = *v;
@@ -86,7 +95,7 @@ Block make_support() {
            [](Reader& reader, const Keyword& keyword, const Node& node, Options& options) {
              if (const auto v = reader.vector(keyword, node)) options.axes.col(1) = *v;
            })
-      .by_default("normal to x_axis, horizontal")
+      .by_default("horizontal and normal to x_axis (z x x_axis); [0, 1, 0] if that is vertical")
       .says("A direction in the plane of x and y; needs `x_axis`.");
   b.check([](Reader& reader, const Node& node, Options& options) {
     check_not_empty(reader, node);
@@ -148,8 +157,9 @@ Block make_load() {
   b.key("rotation", &Options::rotation)
       .in("rad")
       .says(
-          "Rotation vector by which each node is turned from its reference, any number of turns; a support "
-          "must hold it.");
+          "Rotation vector by which each node is turned from its reference, any number of turns about an "
+          "axis; a support must hold it. It takes the place of an earlier one and stays there until another. "
+          "Where the support leaves rotations free, they come after it.");
   b.key("line_force", &Options::line_force)
       .in("N/m")
       .says("Force per drawn length of beams, cables, bars and edges.");

@@ -31,15 +31,6 @@ std::pair<double, double> spin_coefficients(double x) {
 
 }  // namespace
 
-Vec3 rotation_vector(const Mat3& rotation) {
-  const Eigen::Quaterniond q = Eigen::Quaterniond(rotation).normalized();
-  const double s = q.vec().norm();
-  const double w = std::abs(q.w());
-  const double sign = q.w() < 0 ? -1 : 1;
-  const double ratio = s < 1e-12 ? 2 : 2 * std::atan2(s, w) / s;
-  return sign * ratio * q.vec();
-}
-
 SpinToRotationVector::SpinToRotationVector(const Vec3& theta) : theta_(theta) {
   const double x = theta.squaredNorm();
   std::tie(c_, c_over_t_) = spin_coefficients(x);

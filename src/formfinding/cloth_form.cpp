@@ -24,15 +24,18 @@ void check_cloth(const ConstrainedNet& problem) {
   for (const auto& corners : problem.triangles)
     for (const int node : corners)
       if (node < 0 || node >= n_nodes)
-        throw ModelError(fmt::format("cloth names node {}, but the net has {} nodes", node, n_nodes));
-  check_areas(problem.triangles, to_coordinates(problem.net.nodes));
+        throw ModelError(fmt::format("cloth names node {}, but the net has {} nodes", node + 1, n_nodes));
+  check_areas(problem.net, isotropic_film(problem.triangles, problem.surface_stress));
 }
 
 /// The net with every side of the cloth as a branch of a held force density.
 class ClothedNet {
  public:
   explicit ClothedNet(const ConstrainedNet& problem, const ConstrainedOptions& options)
-      : problem_(problem), sides_(find_sides(problem.triangles)), net_(problem) {
+      : problem_(problem),
+        facets_(isotropic_film(problem.triangles, problem.surface_stress)),
+        sides_(find_sides(facets_)),
+        net_(problem) {
     net_.triangles.clear();
     net_.net.branches.insert(net_.net.branches.end(), sides_.nodes.begin(), sides_.nodes.end());
     const auto n = static_cast<Eigen::Index>(net_.net.branches.size());
@@ -52,7 +55,7 @@ class ClothedNet {
   Eigen::Index n_cables() const { return static_cast<Eigen::Index>(problem_.net.branches.size()); }
 
   VecX pull(const Points& nodes) const {
-    return natural_force_density(sides_, problem_.triangles, problem_.surface_stress, to_coordinates(nodes));
+    return natural_force_density(sides_, facets_, to_coordinates(nodes));
   }
 
   /// Goes on from a shape with the pull of the cloth there.
@@ -96,6 +99,7 @@ class ClothedNet {
   }
 
   const ConstrainedNet& problem_;
+  std::vector<FilmFacet> facets_;
   FilmSides sides_;
   ConstrainedNet net_;
 };

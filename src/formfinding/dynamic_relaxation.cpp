@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <formfinding/film_sides.hpp>
+#include <formfinding/film_balance.hpp>
+#include <formfinding/film_mesh.hpp>
 #include <formfinding/net_forces.hpp>
-#include <tautline/core/error.hpp>
 #include <tautline/core/interrupt.hpp>
+#include <tautline/formfinding/node_error.hpp>
 
 namespace tautline::formfinding {
 
@@ -17,7 +18,7 @@ namespace {
 class Motion {
  public:
   Motion(const ElasticNet& net, const DynamicRelaxationOptions& options)
-      : net_(net), options_(options), system_(net.net), nodes_(to_coordinates(net.net.nodes)) {
+      : net_(net), options_(options), film_(net), system_(net.net), nodes_(to_coordinates(net.net.nodes)) {
     for (const Guide& guide : net.net.guides) put_on(guide);
     set_masses();
     evaluate();
@@ -36,7 +37,7 @@ class Motion {
   double kinetic_energy() const { return 0.5 * mass_.dot(velocity_.rowwise().squaredNorm()); }
   double largest_force() const { return force_.rows() > 0 ? force_.rowwise().norm().maxCoeff() : 0.0; }
   bool at_rest() const { return largest_force() <= options_.tolerance * scale_; }
-  bool goes_on() const { return !at_rest() && result_.iterations < options_.max_iterations; }
+  bool goes_on() const { return !at_rest() && !collapsed_ && result_.iterations < options_.max_iterations; }
   /// Back to the time of the peak (1.28)-(1.29), from the last three energies.
   void return_to_peak(double e1, double e2, double e3);
   void run_kinetic();
@@ -46,6 +47,7 @@ class Motion {
 
   const ElasticNet& net_;
   const DynamicRelaxationOptions& options_;
+  FilmNet film_;
   NetSystem system_;
   Coordinates nodes_;
   VecX mass_;             ///< of the free nodes [N/m x time step^2]
@@ -54,6 +56,7 @@ class Motion {
   Coordinates previous_velocity_, previous_force_;
   VecX tension_;
   double scale_ = 0;
+  bool collapsed_ = false;  ///< nodes of a film have run together
   RelaxationResult result_;
 };
 
@@ -66,19 +69,26 @@ void Motion::put_on(const Guide& guide) {
 }
 
 void Motion::set_masses() {
-  mass_ = 0.5 * options_.mass_factor * nodal_stiffness(net_, nodes_)(system_.free_nodes());
+  VecX stiffness = nodal_stiffness(net_, nodes_);
+  if (!net_.film.empty()) {  // the drawn force densities pull along the film
+    VecX drawn = VecX::Zero(stiffness.size());
+    for (Eigen::Index b = 0; b < film_.drawn.size(); ++b)
+      for (const int node : film_.net.branches[static_cast<std::size_t>(b)])
+        drawn[node] += std::abs(film_.drawn[b]);
+    stiffness = stiffness.cwiseMax(drawn);
+  }
+  mass_ = 0.5 * options_.mass_factor * stiffness(system_.free_nodes());
   for (int i = 0; i < system_.n_free(); ++i)
-    if (!(mass_[i] > 0)) throw ModelError(fmt::format("node {} hangs on nothing", system_.free_nodes()[i]));
+    if (mass_[i] <= 0)
+      throw NodeError("neither a cable nor a film is attached to ", {system_.free_nodes()[i]}, "");
 }
 
 void Motion::evaluate() {
   NetForces forces = net_forces(net_, nodes_);
-  force_ = system_.unbalanced(forces.force(system_.free_nodes(), Eigen::all));
-  if (!net_.triangles.empty()) {
-    FilmDirections directions = film_directions(net_, nodes_);
-    directions.tangent.setZero();  // the motion evens out edges
-    keep_what_counts(directions, system_.free_nodes(), force_);
-  }
+  Coordinates force = forces.force(system_.free_nodes(), Eigen::all);
+  if (!net_.film.empty()) FilmMesh(film_, system_.free_nodes(), nodes_).take_drawn_forces(nodes_, force);
+  force_ = system_.unbalanced(std::move(force));
+  collapsed_ = collapsed_ || !force_.allFinite();
   tension_ = std::move(forces.tension);
   scale_ = std::max(scale_, forces.scale);
 }
@@ -132,7 +142,7 @@ double Motion::pilot_frequency() {
   const Coordinates start = nodes_;
   start_from_rest();
   double before = 0;
-  for (; result_.pilot_iterations < options_.max_iterations; ++result_.pilot_iterations) {
+  for (; result_.pilot_iterations < options_.max_iterations && !collapsed_; ++result_.pilot_iterations) {
     step(0);
     const double now = kinetic_energy();
     if (now < before) break;
@@ -168,6 +178,14 @@ RelaxationResult Motion::run() {
   result_.nodes = to_points(nodes_);
   result_.tension = tension_;
   result_.out_of_balance = largest_force();
+  if (collapsed_) {
+    result_.converged = false;
+    result_.reason = fmt::format(
+        "nodes of the film ran together after {} steps: more tension in edge cables, less stress in the "
+        "film, or a start nearer to the shape may help",
+        result_.iterations);
+    return std::move(result_);
+  }
   result_.reason =
       fmt::format("{}largest force out of balance {:.3g} N {} {:.3g} N",
                   result_.converged ? "" : fmt::format("stopped after {} steps: ", result_.iterations),
@@ -179,10 +197,22 @@ RelaxationResult Motion::run() {
 
 RelaxationResult relax(const ElasticNet& net, const DynamicRelaxationOptions& options) {
   check(net);
+  if (!net.film.empty()) check_areas(net.net, net.film);
   RelaxationResult result = Motion(net, options).run();
-  if (result.converged && !net.triangles.empty())
-    result.side_force_density =
-        balance_film(net.net, result.tension, net.triangles, net.surface_stress, result.nodes);
+  if (net.film.empty()) return result;
+  if (!result.converged) {
+    result.reason += held_points(net.net, net.film);
+    result.stress = target_stresses(net.film, to_coordinates(result.nodes));
+    return result;
+  }
+  const SettledFilm settled = settle_film(net, result.nodes, options.tolerance);
+  result.nodes = settled.nodes;
+  result.stress = settled.stress;
+  result.tension = settled.tension;
+  result.out_of_balance = settled.out_of_balance;
+  const std::string fault = turned_over(net.net, net.film, to_coordinates(result.nodes));
+  result.converged = fault.empty();
+  if (!fault.empty()) result.reason = fault + held_points(net.net, net.film);
   return result;
 }
 

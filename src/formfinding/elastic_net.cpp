@@ -106,7 +106,7 @@ ElasticResult ElasticSearch::run() {
 
 ElasticResult find_elastic_equilibrium(const ElasticNet& net, const ElasticOptions& options) {
   check(net);
-  if (!net.triangles.empty() || !net.net.guides.empty())
+  if (!net.film.empty() || !net.net.guides.empty())
     throw ModelError(
         "Newton's method on elastic nets knows neither films nor guides: use dynamic relaxation");
   return ElasticSearch(net, options).run();

@@ -2,6 +2,8 @@
 
 namespace tautline::formfinding {
 
+constexpr double guide_stiffness = 1e6;  // over that of the net at the node
+
 ElasticTangent::ElasticTangent(const ElasticNet& net) : net_(net), free_index_(net.net.nodes.size(), -1) {
   for (std::size_t node = 0; node < net.net.nodes.size(); ++node) {
     if (net.net.fixed[node]) continue;
@@ -10,7 +12,8 @@ ElasticTangent::ElasticTangent(const ElasticNet& net) : net_(net), free_index_(n
   }
 }
 
-bool ElasticTangent::factorise(const Coordinates& nodes, double shift) {
+bool ElasticTangent::factorise(const Coordinates& nodes, double shift,
+                               const std::function<void(const AddBlock&)>& add_film) {
   SparseFactor::Entries entries;
   const auto add = [&](int i, int j, const Mat3& block) {
     for (int a = 0; a < 3; ++a)
@@ -29,7 +32,19 @@ bool ElasticTangent::factorise(const Coordinates& nodes, double shift) {
     if (j >= 0) add(j, j, block);
     if (i >= 0 && j >= 0) add(std::max(i, j), std::min(i, j), -block);
   }
+  if (add_film)
+    add_film([&](int a, int b, const Mat3& block) {
+      if (free_index_[a] >= 0 && free_index_[b] >= 0) add(free_index_[a], free_index_[b], block);
+    });
   const VecX stiffness = nodal_stiffness(net_, nodes);
+  for (const Guide& guide : net_.net.guides) {
+    const Vec3 along = guide.direction.normalized();
+    const Mat3 onto = along * along.transpose();
+    const int i = free_index_[guide.node];
+    add(i, i,
+        guide_stiffness * stiffness[guide.node] *
+            (guide.kind == Guide::Kind::plane ? onto : Mat3(Mat3::Identity() - onto)));
+  }
   for (int i = 0; i < n_free(); ++i) add(i, i, shift * stiffness[free_nodes_[i]] * Mat3::Identity());
   return factor_.factorise(3 * n_free(), entries) < 0 && factor_.negative_pivots() == 0;
 }

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <tautline/core/error.hpp>
+#include <tautline/formfinding/node_error.hpp>
 #include <utility>
 
 namespace tautline::formfinding {
@@ -17,9 +17,9 @@ void check_branches(const Net& net) {
   for (std::size_t b = 0; b < net.branches.size(); ++b) {
     const auto [first, second] = net.branches[b];
     if (std::min(first, second) < 0 || std::max(first, second) >= n_nodes)
-      throw ModelError(fmt::format("branch {} joins nodes {} and {}, but the net has {} nodes", b, first,
-                                   second, n_nodes));
-    if (first == second) throw ModelError(fmt::format("branch {} joins node {} with itself", b, first));
+      throw ModelError(fmt::format("branch {} joins nodes {} and {}, but the net has {} nodes", b + 1,
+                                   first + 1, second + 1, n_nodes));
+    if (first == second) throw NodeError(fmt::format("branch {} joins ", b + 1), {first}, " with itself");
   }
 }
 
@@ -31,11 +31,10 @@ void check_guides(const Net& net, const Surface* surface) {
   for (const Guide& guide : net.guides) {
     if (guide.node < 0 || guide.node >= static_cast<int>(net.nodes.size()))
       throw ModelError(
-          fmt::format("a guide leads node {}, but the net has {} nodes", guide.node, net.nodes.size()));
-    if (net.fixed[guide.node]) throw ModelError(fmt::format("node {} is fixed and has a guide", guide.node));
-    if (guided[guide.node]) throw ModelError(fmt::format("node {} has two guides", guide.node));
-    if (!(guide.direction.norm() > 0))
-      throw ModelError(fmt::format("the guide of node {} has no direction", guide.node));
+          fmt::format("a guide leads node {}, but the net has {} nodes", guide.node + 1, net.nodes.size()));
+    if (net.fixed[guide.node]) throw NodeError("", {guide.node}, " is fixed and has a guide");
+    if (guided[guide.node]) throw NodeError("", {guide.node}, " has two guides");
+    if (!(guide.direction.norm() > 0)) throw NodeError("the guide of ", {guide.node}, " has no direction");
     guided[guide.node] = true;
   }
 }
@@ -150,8 +149,8 @@ void NetSystem::factorise_guided(const VecX& force_density) {
 }
 
 void NetSystem::report_cancelled(int free) const {
-  throw ModelError(fmt::format("the force densities around node {} cancel out: its place is not determined",
-                               free_nodes_[free]));
+  throw NodeError("the force densities around ", {free_nodes_[free]},
+                  " cancel out: its place is not determined");
 }
 
 int NetSystem::negative_pivots() const {
@@ -185,7 +184,7 @@ void NetSystem::check_hung(const VecX& force_density) const {
     }
   }
   for (const int node : free_nodes_)
-    if (!hung[node]) throw ModelError(fmt::format("node {} hangs on no fixed node", node));
+    if (!hung[node]) throw NodeError("", {node}, " is not connected to any fixed node");
 }
 
 NetState NetSystem::state(const VecX& force_density, Coordinates nodes) const {

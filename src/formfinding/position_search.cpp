@@ -156,8 +156,7 @@ PositionResult find_positions(NetSystem& system, const VecX& tension, const VecX
 }
 
 PositionResult find_fixed_point(NetSystem& system, const DensityOfShape& density, const NetState& start,
-                                double tolerance, int max_iterations,
-                                const std::function<void(const NetState&, Coordinates&)>& counts,
+                                double tolerance, int max_iterations, const PlaceRule& rule,
                                 const std::function<void(int, double)>& progress) {
   PositionResult result;
   const auto free_part = [&](const NetState& s) {
@@ -169,9 +168,9 @@ PositionResult find_fixed_point(NetSystem& system, const DensityOfShape& density
   };
   const auto out_of_balance = [&](const NetState& s) {
     const Coordinates force = nodal_forces(system.net(), s.force_density, s.vectors);
-    Coordinates left = system.unbalanced(force(system.free_nodes(), Eigen::all));
-    if (counts) counts(s, left);
-    return left;
+    Coordinates left = force(system.free_nodes(), Eigen::all);
+    if (rule.force) rule.force(s, left);
+    return system.unbalanced(left);
   };
   NetState& state = result.state;
   state = with_density(start);
@@ -188,7 +187,7 @@ PositionResult find_fixed_point(NetSystem& system, const DensityOfShape& density
     }
     // The equilibrium for these densities lies at the response to what is out of balance.
     Coordinates dx = system.respond(state, force);
-    if (counts) counts(state, dx);
+    if (rule.step) rule.step(state, force, dx);
     const VecX x = flat(free_part(state)), step = flat(dx);
     const VecX mixed = anderson.next(x, x + step) - x;
     const auto moved = [&](const VecX& change) {

@@ -38,15 +38,21 @@ PositionResult find_positions(NetSystem& system, const VecX& tension, const VecX
 /// Force densities that a shape calls for [N/m].
 using DensityOfShape = std::function<VecX(const NetState&)>;
 
+/// Another rule than equilibrium for where nodes lie, in some directions.
+struct PlaceRule {
+  /// Replaces forces on the free nodes by what counts as out of balance.
+  std::function<void(const NetState&, Coordinates& force)> force;
+  /// Replaces the displacements of the free nodes under these forces, in the same directions.
+  std::function<void(const NetState&, const Coordinates& force, Coordinates& step)> step;
+};
+
 /// @brief The fixed point "equilibrium for the force densities of the shape before", accelerated by
 /// Anderson's method on the free nodes.
 ///
 /// Needs no derivative, hence also finds nets whose nodes may slide along their cables, and films.
-/// @param[in] counts  takes from the forces on the free nodes what does not count as out of balance; may be
-/// empty
+/// @param[in] rule  what counts as out of balance in place of the forces; both parts or none
 PositionResult find_fixed_point(NetSystem& system, const DensityOfShape& density, const NetState& start,
-                                double tolerance, int max_iterations,
-                                const std::function<void(const NetState&, Coordinates&)>& counts = {},
+                                double tolerance, int max_iterations, const PlaceRule& rule = {},
                                 const std::function<void(int, double)>& progress = {});
 
 /// The same for given tensions: q <- T/L.

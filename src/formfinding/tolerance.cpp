@@ -17,7 +17,7 @@ class Linearised {
  public:
   explicit Linearised(const ElasticNet& net)
       : net_(net), tangent_(net), vectors_(branch_vectors(net.net, to_coordinates(net.net.nodes))) {
-    if (!net.triangles.empty() || !net.net.guides.empty())
+    if (!net.film.empty() || !net.net.guides.empty())
       throw ModelError("the tolerance analysis knows neither films nor guides");
     if (!tangent_.factorise(to_coordinates(net.net.nodes), 0))
       throw ModelError("the tolerance analysis needs a stable net: its tangent is not positive definite");

@@ -71,7 +71,8 @@ class LoadCheck {
 
   void check_nodal(const Load& load) {
     const bool acts = !load.force.isZero(0) || !load.moment.isZero(0) || load.moves();
-    if (acts && load.nodes.empty()) return fault(load, "it acts on nodes, and what is named in \"on\" has none");
+    if (acts && load.nodes.empty())
+      return fault(load, "it acts on nodes, and what is named in \"on\" has none");
     if (!load.moment.isZero(0)) need_rotations(load, "a moment", load.nodes);
   }
 
@@ -82,9 +83,10 @@ class LoadCheck {
     if (without.empty()) return;
     const std::string others =
         without.size() == 1 ? "" : fmt::format(" (and {} other nodes)", without.size() - 1);
-    fault(load, fmt::format("nothing at {}{} takes up {}: cables, membranes and beams whose ends are released "
-                            "leave its rotation free. Load a node to which a beam or shell is fixed",
-                            place(without.front()), others, what));
+    fault(load,
+          fmt::format("nothing at {}{} takes up {}: cables, membranes and beams whose ends are released "
+                      "leave its rotation free. Load a node to which a beam or shell is fixed",
+                      place(without.front()), others, what));
   }
 
   void check_elements(const Load& load) {
@@ -101,7 +103,8 @@ class LoadCheck {
       fault(load, "a temperature acts on no element");
     if (!line_moment) return;
     if (!lines) fault(load, "line_moment acts on no beam or edge");
-    if (!selected.cables.empty()) fault(load, "line_moment is for beams and edges; cables and bars take none");
+    if (!selected.cables.empty())
+      fault(load, "line_moment is for beams and edges; cables and bars take none");
     std::vector<int> ends;
     for (const auto& edge : selected.edges) ends.insert(ends.end(), edge.begin(), edge.end());
     std::sort(ends.begin(), ends.end());
@@ -114,9 +117,10 @@ class LoadCheck {
     if (sides_.empty()) sides_ = sides_of(model_);
     for (const auto& [a, b] : edges)
       if (!sides_.contains(edge_of(a, b)))
-        return fault(load, fmt::format("the edge from {} to {} is no side of a membrane or shell, nor is there a "
-                                       "beam or cable along it",
-                                       place(a), place(b)));
+        return fault(load,
+                     fmt::format("the edge from {} to {} is no side of a membrane or shell, nor is there a "
+                                 "beam or cable along it",
+                                 place(a), place(b)));
   }
 
   const Model& model_;

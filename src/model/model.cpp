@@ -220,60 +220,6 @@ std::map<std::string, double> mass_by_group(const Model& model) {
   return result;
 }
 
-namespace {
-
-/// Normal of a facet at its corner `i` with the weight that makes the sum over corners exact on a sphere (Max
-/// 1999, Weights for computing vertex normals from facet normals, J. Graphics Tools 4(2), 1-6).
-Vec3 corner_normal(const Model& model, const FacetNodes& nodes, int i) {
-  const int n = nodes.size();
-  const Vec3& here = model.nodes[nodes[i]];
-  const Vec3 out = model.nodes[nodes[(i + 1) % n]] - here, in = model.nodes[nodes[(i + n - 1) % n]] - here;
-  return out.cross(in) / (out.squaredNorm() * in.squaredNorm());
-}
-
-/// Normals of the planes of symmetry that supports make at each node: the displacement along one direction
-/// and the rotations about the two others are held, the rotation about it is not.
-std::vector<std::vector<Vec3>> symmetry_planes(const Model& model) {
-  std::vector<std::vector<Vec3>> planes(model.nodes.size());
-  for (const auto& support : model.supports)
-    for (int c = 0; c < 3; ++c) {
-      const auto& fixed = support.fixed;
-      if (!fixed[c] || fixed[3 + c] || !fixed[3 + (c + 1) % 3] || !fixed[3 + (c + 2) % 3]) continue;
-      for (const int node : support.nodes) planes[node].push_back(support.axes.col(c));
-    }
-  return planes;
-}
-
-/// The normal as it is between a shell and its mirror image: the sum of it and of its image.
-Vec3 mirrored(Vec3 normal, const std::vector<Vec3>& planes) {
-  constexpr double smooth = 0.342;  // sine of 20 degrees: beyond, the mirror is a kink
-  for (const Vec3& plane : planes)
-    if (const double across = normal.dot(plane); std::abs(across) < smooth)
-      normal = (normal - across * plane).normalized();
-  return normal;
-}
-
-}  // namespace
-
-void find_directors(Model& model) {
-  const auto planes = symmetry_planes(model);
-  constexpr double smooth = 0.9397;  // cosine of 20 degrees: beyond, an edge is a kink
-  std::vector<std::vector<std::pair<int, Vec3>>> at_node(model.nodes.size());
-  for (const auto& shell : model.shells)
-    for (int i = 0; i < shell.nodes.size(); ++i)
-      at_node[shell.nodes[i]].emplace_back(shell.group, corner_normal(model, shell.nodes, i));
-  for (auto& shell : model.shells)
-    for (int i = 0; i < shell.nodes.size(); ++i) {
-      const Vec3 own = corner_normal(model, shell.nodes, i).normalized();
-      Vec3 sum = Vec3::Zero();
-      for (const auto& [group, normal] : at_node[shell.nodes[i]])
-        if (group == shell.group && std::abs(normal.dot(own)) >= smooth * normal.norm())
-          sum += normal.dot(own) < 0 ? Vec3(-normal) : normal;
-      shell.director[static_cast<std::size_t>(i)] =
-          mirrored(sum.normalized(), planes[static_cast<std::size_t>(shell.nodes[i])]);
-    }
-}
-
 double total_mass(const Model& model) {
   double total = 0;
   for (const auto& [name, mass] : mass_by_group(model)) total += mass;

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include <tautline/element/cable.hpp>
+#include <tautline/model/beam_ends.hpp>
 #include <tautline/model/element_data.hpp>
 
 namespace tautline::model {
@@ -115,9 +116,9 @@ void add(GroupSummary& s, const CableResult& cable, double target) {
   s.tension_rms_from_target += std::pow(cable.tension - target, 2);
 }
 
-void add(GroupSummary& s, const element::BeamForces& beam) {
-  s.axial_min = std::min(s.axial_min, beam.axial);
-  s.axial_max = std::max(s.axial_max, beam.axial);
+void add(GroupSummary& s, const element::BeamForces& beam, double axial_start) {
+  s.axial_min = std::min({s.axial_min, beam.axial, axial_start});
+  s.axial_max = std::max({s.axial_max, beam.axial, axial_start});
   for (int end = 0; end < 2; ++end)
     s.moment_max = std::max(s.moment_max, beam.end_moment.col(end).tail<2>().norm());
 }
@@ -143,6 +144,15 @@ void add(GroupSummary& s, const SpringResult& spring) {
 
 }  // namespace
 
+Vec3 first_end_force(const Model& model, const Response& response, std::size_t beam) {
+  const auto& forces = response.beams[beam];
+  const Vec3 end(forces.axial, forces.shear[0], forces.shear[1]);
+  const auto& element = model.beams[beam];
+  if (element.line_load.isZero(0)) return end;
+  const double length = (model.nodes[element.nodes[1]] - model.nodes[element.nodes[0]]).norm();
+  return end + response.beam_frames[beam].transpose() * element.line_load * length;
+}
+
 Vec<2> principal_values(const Vec3& n) {
   const double mean = (n[0] + n[1]) / 2, radius = std::hypot((n[0] - n[1]) / 2, n[2]);
   return {mean + radius, mean - radius};
@@ -158,6 +168,8 @@ std::map<std::string, GroupSummary> summarise_groups(const Model& model, const S
       ++summary.count;
       if constexpr (std::is_same_v<std::decay_t<decltype(results[i])>, CableResult>)
         add(summary, results[i], model.groups[elements[i].group].target_tension);
+      else if constexpr (std::is_same_v<std::decay_t<decltype(results[i])>, element::BeamForces>)
+        add(summary, results[i], first_end_force(model, response, i)[0]);
       else
         add(summary, results[i]);
     }

@@ -214,13 +214,6 @@ class SectionSetter {
   const Materials& materials_;
 };
 
-/// Resultants N1, N2 along `orientation` and across it, in the axes of `frame`.
-Vec3 along_orientation(const Mat3& frame, const Vec3& orientation, const std::array<double, 2>& n) {
-  if (n[0] == n[1]) return {n[0], n[1], 0};
-  const double angle = angle_in(frame, orientation), c = std::cos(angle), s = std::sin(angle);
-  return {c * c * n[0] + s * s * n[1], s * s * n[0] + c * c * n[1], c * s * (n[0] - n[1])};
-}
-
 template <int N>
 Mat3 frame_of(const Model& model, const Membrane& membrane) {
   return element::membrane_frame<N>(reference_nodes<N>(model, membrane.nodes));
@@ -236,10 +229,16 @@ void prestress_facets(Model& model, Facets& facets, int group, const std::array<
     if (facet.group == group)
       facet.prestress =
           along_orientation(facet.nodes.size() == 3 ? frame_of<3>(model, facet) : frame_of<4>(model, facet),
-                            model.groups[group].orientation, resultants);
+                            axis_1(model.groups[group]), resultants);
 }
 
 }  // namespace
+
+Vec3 along_orientation(const Mat3& frame, const Vec3& orientation, const std::array<double, 2>& n) {
+  if (n[0] == n[1]) return {n[0], n[1], 0};
+  const double angle = angle_in(frame, orientation), c = std::cos(angle), s = std::sin(angle);
+  return {c * c * n[0] + s * s * n[1], s * s * n[0] + c * c * n[1], c * s * (n[0] - n[1])};
+}
 
 void set_section(Group& group, const SectionOptions& section, const Materials& materials) {
   group.kind = kind_of(section);

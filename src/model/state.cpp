@@ -4,7 +4,7 @@ namespace tautline::model {
 
 State State::reference(const Model& model) {
   return {Points(model.nodes.size(), Vec3::Zero()), std::vector<Mat3>(model.nodes.size(), Mat3::Identity()),
-          Points(model.links.size(), Vec3::Zero())};
+          Points(model.links.size(), Vec3::Zero()), Points(model.nodes.size(), Vec3::Zero())};
 }
 
 State State::initial(const Model& model) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
+#include <tautline/model/element_data.hpp>
 
 namespace tautline::model {
 
@@ -18,11 +19,21 @@ Edge edge_of(int a, int b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// Resultants N0 given in the frame of one triangle, seen from the frame of another in the same plane.
-Vec3 turned(const Vec3& resultants, const Mat3& from, const Mat3& to) {
+/// @brief Resultants of a facet, given in its frame `from`, for a part of it with the frame `to`.
+///
+/// They keep their angle to axis 1 of the group, the projection of `orientation` on either; where there is
+/// none, the frame is turned by the smallest rotation that takes one normal to the other.
+Vec3 turned(const Vec3& resultants, const Mat3& from, const Mat3& to, const Vec3& orientation) {
+  double angle = 0;  // from axis 1 of `to` to where axis 1 of `from` has gone
+  if (has_projection(from, orientation) && has_projection(to, orientation)) {
+    angle = angle_in(to, orientation) - angle_in(from, orientation);
+  } else {
+    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(from.col(2), to.col(2));
+    angle = angle_in(to, turn * Vec3(from.col(0)));
+  }
   Eigen::Matrix2d tensor;
   tensor << resultants[0], resultants[2], resultants[2], resultants[1];
-  const Eigen::Matrix2d rotation = to.leftCols<2>().transpose() * from.leftCols<2>();
+  const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(angle).toRotationMatrix();
   const Eigen::Matrix2d result = rotation * tensor * rotation.transpose();
   return {result(0, 0), result(1, 1), result(0, 1)};
 }
@@ -199,8 +210,8 @@ class Subdivider {
         Facet part = from[i];
         part.nodes = nodes;
         part.parent = static_cast<int>(i);
-        part.prestress =
-            turned(from[i].prestress, frame(old_.nodes, from[i].nodes), frame(new_.nodes, nodes));
+        part.prestress = turned(from[i].prestress, frame(old_.nodes, from[i].nodes), frame(new_.nodes, nodes),
+                                axis_1(old_.groups[static_cast<std::size_t>(from[i].group)]));
         children.back().push_back(static_cast<int>(to.size()));
         to.push_back(part);
       }

@@ -23,9 +23,7 @@ class Faults {
     faults_.push_back(fmt::format(text, std::forward<Args>(args)...));
   }
 
-  void add(std::vector<std::string> more) {
-    faults_.insert(faults_.end(), more.begin(), more.end());
-  }
+  void add(std::vector<std::string> more) { faults_.insert(faults_.end(), more.begin(), more.end()); }
 
   std::string element(const char* kind, std::size_t index, int group) const {
     return fmt::format("{} {} of group \"{}\"", kind, index + 1, model_.groups[group].name);
@@ -127,8 +125,9 @@ void check_held_rotations(const Model& model, Faults& faults) {
     if (!moves || !(fixed[3] || fixed[4] || fixed[5])) continue;
     for (const int node : support.nodes)
       if (turns_with[node])
-        faults.add("support \"{}\" holds the rotation of node {}, which turns with another node: support that one",
-                   support.name, node + 1);
+        faults.add(
+            "support \"{}\" holds the rotation of node {}, which turns with another node: support that one",
+            support.name, node + 1);
   }
 }
 
@@ -153,8 +152,18 @@ void check_links(const Model& model, Faults& faults) {
   };
   chain(model.cyclic_pairs);
   links_in_order(model);
+  std::vector<bool> turned(model.nodes.size(), false);
+  for (const auto& link : model.links) turned[link.follower] = !link.rotation_free;
+  for (const auto& pair : model.cyclic_pairs) turned[pair.follower] = true;
   for (const auto& support : model.supports)
     for (const int node : support.nodes) {
+      const bool rotation = support.fixed[3] || support.fixed[4] || support.fixed[5];
+      if (rotation && turned[node])
+        faults.add(
+            "support \"{}\" holds a rotation of node {}, which turns with another node through a link: "
+            "support "
+            "that one",
+            support.name, node + 1);
       const bool held = support.fixed[0] || support.fixed[1] || support.fixed[2];
       if (held && followed[node] > 0)
         faults.add(

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
+#include <tautline/model/beam_ends.hpp>
 #include "output/detail/files.hpp"
 
 namespace tautline::output {
@@ -118,15 +119,17 @@ void write_beams(const std::string& path, const model::Model& model, const model
   require_size(path, "beam results", response.beams.size(), model.beams.size());
   Table table(
       "id,group,node_1,node_2,axial,shear_2,shear_3,torque,moment_2_start,moment_3_start,moment_2_end,moment_"
-      "3_end");
+      "3_end,axial_start,shear_2_start,shear_3_start");
   const auto groups = group_cells(model);
   for (std::size_t i = 0; i < model.beams.size(); ++i) {
     const auto& beam = model.beams[i];
     const auto& f = response.beams[i];
-    table.row("{},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}", i + 1,
-              groups[static_cast<std::size_t>(beam.group)], beam.nodes[0] + 1, beam.nodes[1] + 1, f.axial,
-              f.shear[0], f.shear[1], f.torque, f.end_moment(1, 0), f.end_moment(2, 0), f.end_moment(1, 1),
-              f.end_moment(2, 1));
+    const Vec3 start = model::first_end_force(model, response, i);
+    table.row(
+        "{},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}",
+        i + 1, groups[static_cast<std::size_t>(beam.group)], beam.nodes[0] + 1, beam.nodes[1] + 1, f.axial,
+        f.shear[0], f.shear[1], f.torque, f.end_moment(1, 0), f.end_moment(2, 0), f.end_moment(1, 1),
+        f.end_moment(2, 1), start[0], start[1], start[2]);
   }
   table.write(path);
 }

@@ -96,9 +96,10 @@ Json reactions_json(const assembly::System& system, const assembly::Boundary& bo
     const Vec3 centre = centre_of(support.nodes);
     for (const int node : support.nodes) {
       auto& [of_force, of_moment] = claims[node];
+      const Mat3 axes = system.kinematics().reaction_axes(node) * support.axes;
       sum.add(positions[node] - centre,
               of_force.take(support.axes, support.fixed.data(), reactions.force[node]),
-              of_moment.take(support.axes, support.fixed.data() + 3, reactions.moment[node]));
+              of_moment.take(axes, support.fixed.data() + 3, reactions.moment[node]));
     }
     list.emplace_back(support.name, sum);
   }

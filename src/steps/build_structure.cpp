@@ -179,9 +179,9 @@ void check_sections(const model::Model& model, const deck::Deck& deck) {
                             [&](const model::Link& link) { return link.group == group; });
     model::for_each_kind(model, [&](const auto& elements) { used = used || in(elements); });
     if (!options.section.empty() && !used)
-      throw ModelError(fmt::format(
-          "{}group \"{}\" has a section but no elements: the structure has none of that name",
-          model::prefix(options.where), name));
+      throw ModelError(
+          fmt::format("{}group \"{}\" has a section but no elements: the structure has none of that name",
+                      model::prefix(options.where), name));
   }
 }
 
@@ -246,10 +246,22 @@ void number_elements(model::Model& model) {
   });
 }
 
+/// A node on the axis is its own partner: it moves along the axis and turns about it only.
+void hold_on_axis(model::Model& model, const Vec3& axis, const std::vector<int>& nodes) {
+  if (nodes.empty()) return;
+  auto& support = model.supports.emplace_back();
+  support.name = "cyclic axis";
+  support.nodes = nodes;
+  support.fixed = {true, true, false, true, true, false};
+  const Vec3 across = axis.unitOrthogonal();
+  support.axes << across, axis.cross(across), axis;
+}
+
 /// Finds for every node of `to` the one of `from` that the turn brings there.
 void add_cyclic(model::Model& model, const model::CyclicOptions& options) {
-  const Mat3 turn =
-      Eigen::AngleAxisd(options.angle * std::numbers::pi / 180, options.axis.normalized()).toRotationMatrix();
+  const Vec3 axis = options.axis.normalized();
+  const Mat3 turn = Eigen::AngleAxisd(options.angle * std::numbers::pi / 180, axis).toRotationMatrix();
+  std::vector<int> on_axis;
   const auto leaders = model.nodes_of(options.from);
   double size = 0;
   for (const auto& node : model.nodes) size = std::max(size, (node - options.centre).norm());
@@ -264,8 +276,12 @@ void add_cyclic(model::Model& model, const model::CyclicOptions& options) {
                       "by {} degrees: it would be at ({:g}, {:g}, {:g})",
                       model::prefix(options.where), follower + 1,
                       options.angle, wanted.x(), wanted.y(), wanted.z()));
-    if (*found != follower) model.cyclic_pairs.push_back({*found, follower, turn});
+    if (*found == follower)
+      on_axis.push_back(follower);
+    else
+      model.cyclic_pairs.push_back({*found, follower, turn});
   }
+  hold_on_axis(model, axis, on_axis);
 }
 
 /// Names in supports and loads are looked up where the deck mentions them.
@@ -372,8 +388,8 @@ model::Model build_structure(const deck::Deck& deck) {
     for (const auto& cyclic : deck.model->cyclic) add_cyclic(model, cyclic);
   }
   for (const auto& support : deck.supports)
-    model.supports.push_back(
-        {support.name, support.on, look_up(model, support.on, support.where), support.fixed, support.axes});
+    model.supports.push_back({support.name, support.on, look_up(model, support.on, support.where),
+                              support.fixed, support.axes, support.symmetry});
   add_loads(model, deck);
   return model;
 }

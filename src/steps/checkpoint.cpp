@@ -47,12 +47,13 @@ std::vector<Matrix> unflat(const Json& values) {
 Json to_json(const model::State& state) {
   return {{"displacement", flat(state.displacement)},
           {"rotation", flat(state.rotation)},
-          {"hinge_angle", flat(state.hinge_angle)}};
+          {"hinge_angle", flat(state.hinge_angle)},
+          {"turn", flat(state.turn)}};
 }
 
 model::State state_of(const Json& json) {
   return {unflat<Vec3>(json["displacement"]), unflat<Mat3>(json["rotation"]),
-          unflat<Vec3>(json["hinge_angle"])};
+          unflat<Vec3>(json["hinge_angle"]), unflat<Vec3>(json["turn"])};
 }
 
 Json to_json(const assembly::Rest& rest) {
@@ -66,7 +67,6 @@ Json to_json(const assembly::Rest& rest) {
           {"temperature_gradient", flat(a.temperature_gradient)},
           {"strain", a.strain},
           {"acceleration", flat(std::vector<Vec3>{a.acceleration})},
-          {"turned", flat(rest.turned)},
           {"stiffness_factor", rest.stiffness_factor}};
 }
 
@@ -79,8 +79,7 @@ assembly::Rest rest_of(const Json& json) {
                           unflat<Vec3>(json["temperature_gradient"]),
                           json["strain"].get<std::vector<double>>(),
                           unflat<Vec3>(json["acceleration"]).front()};
-  return {state_of(json["state"]), std::move(acting), unflat<Vec3>(json["turned"]),
-          json["stiffness_factor"].get<std::vector<double>>()};
+  return {state_of(json["state"]), std::move(acting), json["stiffness_factor"].get<std::vector<double>>()};
 }
 
 Json to_json(const std::optional<analysis::ArcPlace>& arc) {

@@ -63,7 +63,8 @@ class Checkpoints {
 /// @throws LibraryError if there are none, or one is damaged or belongs to another structure
 std::optional<Checkpoint> find_checkpoint(const deck::Deck& deck, const std::string& directory);
 
-/// @throws LibraryError unless every list of the checkpoint has as many entries as `wanted`, of the mesh as made
+/// @throws LibraryError unless every list of the checkpoint has as many entries as `wanted`, of the mesh as
+/// made
 void require_fit(const Checkpoint& checkpoint, const assembly::Rest& wanted, const std::string& from);
 
 }  // namespace tautline::steps

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
-#include <tautline/element/membrane.hpp>
 #include <tautline/model/response.hpp>
 #include <tautline/model/section.hpp>
 
@@ -35,22 +34,9 @@ void take_cables(model::Model& structure, const FormNet& net, const Form& found)
   }
 }
 
-/// Stress of triangles from the force densities of their sides: A N = sum of q l l^T.
 void take_film(model::Model& structure, const FormNet& net, const Form& found) {
-  for (std::size_t t = 0; t < found.film_sides.size(); ++t) {
-    auto& membrane = structure.membranes[net.membranes[t]];
-    if (membrane.nodes.size() != 3) continue;  // of two triangles: keeps the stress it was given
-    Mat<3, 3> x;
-    for (int k = 0; k < 3; ++k) x.col(k) = found.nodes[net.triangles[t][k]];
-    const Mat<3, 2> axes = element::membrane_frame<3>(x).leftCols<2>();
-    const double area = 0.5 * (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).norm();
-    Mat<2> stress = Mat<2>::Zero();
-    for (int k = 0; k < 3; ++k) {
-      const Vec<2> side = axes.transpose() * (x.col((k + 2) % 3) - x.col((k + 1) % 3));
-      stress += found.film_sides[t][k] / area * side * side.transpose();
-    }
-    membrane.prestress = Vec3(stress(0, 0), stress(1, 1), stress(0, 1));
-  }
+  for (std::size_t f = 0; f < found.film_stress.size(); ++f)
+    structure.membranes[net.membranes[f]].prestress = found.film_stress[f];
 }
 
 /// What of the largest tension found is no more than its rounding [N].
@@ -146,16 +132,33 @@ Json support_forces(const model::Model& structure, const FormNet& net, const For
   return supports;
 }
 
-/// Largest deviation of a film's stress from the stress asked for, over it.
-double film_unevenness(const model::Model& structure, const FormNet& net) {
-  double largest = 0;
-  for (std::size_t t = 0; t < net.membranes.size(); ++t) {
-    const Vec3& n = structure.membranes[net.membranes[t]].prestress;
-    const double s = net.surface_stress[static_cast<Eigen::Index>(t)];
-    const Mat<2> off = (Mat<2>() << n[0] - s, n[2], n[2], n[1] - s).finished();
-    largest = std::max(largest, off.norm() / s);
-  }
-  return largest;
+constexpr double noted_unevenness = 0.03, largest_unevenness = 0.3;
+
+/// Largest deviation of a film's stress from the stress asked for, over it; notes and judges it.
+void judge_film(Context& context, const FormNet& net, const Form& found, Json& entry) {
+  const auto uneven = formfinding::film_unevenness(net.film, found.film_stress, found.nodes);
+  const auto worst = std::max_element(uneven.begin(), uneven.end());
+  entry["film_unevenness"] = *worst;
+  if (*worst <= noted_unevenness) return;
+  const auto facet = static_cast<std::size_t>(worst - uneven.begin());
+  const auto& membrane = context.structure.membranes[net.membranes[facet]];
+  Vec3 middle = Vec3::Zero();
+  for (const int node : net.film[facet].nodes) middle += found.nodes[node] / net.film[facet].nodes.size();
+  const auto many =
+      std::count_if(uneven.begin(), uneven.end(), [](double u) { return u > noted_unevenness; });
+  const std::string text = fmt::format(
+      "the stress of the film deviates by up to {:.2g} % from the one asked for, by more than {:.0f} % in {} "
+      "of {} facets; largest in \"{}\" at ({:.4g}, {:.4g}, {:.4g}): a finer or more even mesh there, a cable "
+      "or "
+      "a ring at points that hold the film, or more equal prestress in both directions evens it out",
+      100 * *worst, 100 * noted_unevenness, many, uneven.size(),
+      context.structure.groups[static_cast<std::size_t>(membrane.group)].name, middle.x(), middle.y(),
+      middle.z());
+  context.warn("film_unevenness", text);
+  if (*worst <= largest_unevenness) return;
+  entry["status"] = "not_converged";
+  entry["reason"] =
+      fmt::format("unevenness of the film {:.3g} > {:.3g}: {}", *worst, largest_unevenness, text);
 }
 
 void draw_convergence(Context& context, const Form& found) {
@@ -278,7 +281,7 @@ Json run_step(Context& context, const FormFindingOptions& options) {
   if (!context.surface)
     if (const Json supports = support_forces(context.structure, net, found); !supports.empty())
       entry["reactions"] = supports;
-  if (!found.film_sides.empty()) entry["film_unevenness"] = film_unevenness(context.structure, net);
+  if (!found.film_stress.empty()) judge_film(context, net, found, entry);
   if (found.converged) show(context);
   if (found.converged && options.length_errors)
     entry["length_errors"] = length_errors_json(context, *options.length_errors, net);

@@ -10,6 +10,7 @@
 #include <tautline/formfinding/dynamic_relaxation.hpp>
 #include <tautline/formfinding/force_density.hpp>
 #include <tautline/formfinding/minimal_film.hpp>
+#include <tautline/formfinding/node_error.hpp>
 
 namespace tautline::steps {
 
@@ -58,9 +59,9 @@ VecX axial_stiffness(const model::Model& structure, const FormNet& form) {
 }
 
 /// What branches, loads and films leave at each node.
-/// @param[in] film_sides  force densities of the sides opposite to the corners; may be empty
+/// @param[in] film_stress  of each facet of the film [N/m]; may be empty
 Points reactions(const FormNet& form, const Points& nodes, const VecX& tension,
-                 const Points& film_sides = {}) {
+                 const Points& film_stress = {}) {
   Points reaction(nodes.size(), Vec3::Zero());
   for (std::size_t i = 0; i < form.net.load.size(); ++i) reaction[i] = -form.net.load[i];
   for (std::size_t b = 0; b < form.net.branches.size(); ++b) {
@@ -69,14 +70,21 @@ Points reactions(const FormNet& form, const Points& nodes, const VecX& tension,
     reaction[i] -= pull;
     reaction[j] += pull;
   }
-  for (std::size_t t = 0; t < film_sides.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const int i = form.triangles[t][(k + 1) % 3], j = form.triangles[t][(k + 2) % 3];
-      const Vec3 pull = film_sides[t][k] * (nodes[j] - nodes[i]);
-      reaction[i] -= pull;
-      reaction[j] += pull;
-    }
+  if (film_stress.empty()) return reaction;
+  const Points pull = formfinding::film_forces(form.film, film_stress, nodes);
+  for (std::size_t i = 0; i < reaction.size(); ++i) reaction[i] -= pull[i];
   return reaction;
+}
+
+/// Triangles of cloth that has one stress in all directions; a quadrilateral is two.
+void add_cloth(const FormNet& form, ConstrainedNet& problem) {
+  std::vector<double> stress;
+  for (const auto& facet : form.film)
+    for (const auto& triangle : facet.nodes.triangles()) {
+      problem.triangles.push_back(triangle);
+      stress.push_back(facet.stress[0]);
+    }
+  problem.surface_stress = Eigen::Map<const VecX>(stress.data(), static_cast<Eigen::Index>(stress.size()));
 }
 
 /// What every method's answer has.
@@ -244,9 +252,8 @@ Form find_with_constraints(const Context& context, const FormFindingOptions& opt
                          std::vector<bool>(form.cables.size(), false),
                          {},
                          {},
-                         axial_stiffness(structure, form),
-                         form.triangles,
-                         form.surface_stress};
+                         axial_stiffness(structure, form)};
+  add_cloth(form, problem);
   if (options.method == FormMethod::linear || options.method == FormMethod::balanced)
     problem.held.assign(form.cables.size(), true);
   auto held = options.hold;
@@ -322,12 +329,9 @@ Form relax(const Context& context, const FormFindingOptions& options, const Form
   solver.tolerance = options.tolerance.value_or(solver.tolerance);
   solver.max_iterations = options.max_iterations.value_or(solver.max_iterations);
   const auto& structure = context.structure;
-  formfinding::ElasticNet net{form.net,
-                              axial_stiffness(structure, form),
-                              unstressed_lengths(structure, form),
+  formfinding::ElasticNet net{form.net, axial_stiffness(structure, form), unstressed_lengths(structure, form),
                               VecX::Constant(static_cast<Eigen::Index>(form.cables.size()), std::nan("")),
-                              form.triangles,
-                              form.surface_stress};
+                              form.film};
   net.carries_compression = bars(structure, form);
   VecX lengths = net.unstressed_length;
   const auto constant = form.branches_of(structure, options.constant_tension);
@@ -344,8 +348,8 @@ Form relax(const Context& context, const FormFindingOptions& options, const Form
   Form result = begin(found);
   result.tension = found.tension;
   result.unstressed_length = lengths;
-  result.film_sides = found.side_force_density;
-  result.reaction = reactions(form, found.nodes, found.tension, result.film_sides);
+  result.film_stress = found.stress;
+  result.reaction = reactions(form, found.nodes, found.tension, result.film_stress);
   result.details = {{"iterations", found.iterations}, {"out_of_balance", found.out_of_balance}};
   const bool viscous = solver.damping == formfinding::Damping::viscous;
   if (viscous) result.details["pilot_iterations"] = found.pilot_iterations;
@@ -365,16 +369,15 @@ Form find_film(const Context& context, const FormFindingOptions& options, const 
     tension[static_cast<int>(b)] = target > 0 ? target : std::nan("");
   }
   const auto found = formfinding::find_minimal_film(
-      {form.net, form.triangles, form.surface_stress, tension,
-       drawn_force_density(structure, form, options.initial_force_density)},
+      {form.net, form.film, tension, drawn_force_density(structure, form, options.initial_force_density)},
       solver, [&](int iteration, double residual) {
         context.progress.update(
             fmt::format("{} | iteration {}, residual {:.2e} N", context.step_name, iteration, residual));
       });
   Form result = begin(found);
   result.tension = found.cable_tension;
-  result.film_sides = found.side_force_density;
-  result.reaction = reactions(form, found.nodes, found.cable_tension, result.film_sides);
+  result.film_stress = found.stress;
+  result.reaction = reactions(form, found.nodes, found.cable_tension, result.film_stress);
   result.residual = found.residual;
   result.residual_name = "largest force out of balance [N]";
   result.details = {{"iterations", found.iterations},
@@ -386,12 +389,14 @@ Form find_film(const Context& context, const FormFindingOptions& options, const 
 
 }  // namespace
 
-Form find_form(const Context& context, const FormFindingOptions& options, const FormNet& form) {
+namespace {
+
+Form find_by_method(const Context& context, const FormFindingOptions& options, const FormNet& form) {
   switch (options.method) {
     case FormMethod::linear:
     case FormMethod::balanced:
-      return form.triangles.empty() ? find_linear(context, options, form)
-                                    : find_with_constraints(context, options, form);
+      return form.film.empty() ? find_linear(context, options, form)
+                               : find_with_constraints(context, options, form);
     case FormMethod::constraints:
       return find_with_constraints(context, options, form);
     case FormMethod::elastic:
@@ -406,8 +411,18 @@ Form find_form(const Context& context, const FormFindingOptions& options, const 
   const bool mixed = std::any_of(form.groups.begin(), form.groups.end(), [&](const std::string& group) {
     return keeps_force_density(context, options, group);
   });
-  return form.triangles.empty() && !mixed ? find_by_tensions(context, options, form)
-                                          : find_with_constraints(context, options, form);
+  return form.film.empty() && !mixed ? find_by_tensions(context, options, form)
+                                     : find_with_constraints(context, options, form);
+}
+
+}  // namespace
+
+Form find_form(const Context& context, const FormFindingOptions& options, const FormNet& form) {
+  try {
+    return find_by_method(context, options, form);
+  } catch (const formfinding::NodeError& error) {
+    throw ModelError("form-finding: " + error.with([&](int node) { return form.node_name(context, node); }));
+  }
 }
 
 }  // namespace tautline::steps

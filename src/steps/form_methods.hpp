@@ -15,7 +15,7 @@ struct Form {
   VecX unstressed_length;  ///< of each branch [m]; empty: from the tension
   Points reaction;         ///< force that each net node still needs [N]
   VecX cloth_pull;         ///< of the cloth along each branch [N/m]; empty without
-  Points film_sides;       ///< force densities of the sides of each triangle [N/m]; empty: stress as given
+  Points film_stress;      ///< of each facet of the film [N/m], see FilmResult; empty: as given
   std::string residual_name = "largest tension error [N]";
   std::vector<double> residual;  ///< by iteration
   Json details;                  ///< of the method, for results.json

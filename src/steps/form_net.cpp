@@ -1,10 +1,12 @@
 #include "steps/form_net.hpp"
 
 #include <algorithm>
+#include <variant>
 
 #include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
+#include <tautline/model/element_data.hpp>
 
 #include "steps/reflector_form.hpp"
 
@@ -54,25 +56,40 @@ void add_branches(const model::Model& structure, FormNet& form) {
   }
 }
 
-/// Films have one stress in all directions, N11 = N22.
-void add_cloth(const model::Model& structure, FormNet& form) {
-  std::vector<double> stress;
+/// Whether the method takes films whose stress is not the same in all directions.
+bool takes_unequal_stress(FormMethod method) {
+  return method == FormMethod::film || method == FormMethod::dynamic_relaxation;
+}
+
+/// What the deck asks for; single facets may have been changed by an earlier step [N/m].
+std::array<double, 2> asked_prestress(const Context& context, const model::GroupOptions& group) {
+  if (group.prestress) return *group.prestress;
+  const auto* cloth = std::get_if<model::MembraneSectionOptions>(&context.deck.sections.at(group.section));
+  if (!group.initial_stress || cloth == nullptr) return {0, 0};
+  const double thickness = cloth->thickness.value_or(0);
+  return {(*group.initial_stress)[0] * thickness, (*group.initial_stress)[1] * thickness};
+}
+
+void add_cloth(const Context& context, const FormFindingOptions& options, FormNet& form) {
+  const auto& structure = context.structure;
   for (const auto& name : form.cloth)
     for (const int i : structure.select(name).membranes) {
       const auto& membrane = structure.membranes[i];
-      const Vec3& n = membrane.prestress;
-      if (!(n[0] > 0) || std::abs(n[0] - n[1]) > 1e-9 * n[0] || std::abs(n[2]) > 1e-9 * n[0])
+      const auto& group = structure.groups[membrane.group];
+      const auto stress = asked_prestress(context, context.deck.groups.at(group.name));
+      if (!(std::min(stress[0], stress[1]) > 0) ||
+          (stress[0] != stress[1] && !takes_unequal_stress(options.method)))
         throw ModelError(fmt::format(
-            "form-finding: the cloth \"{}\" needs one prestress > 0 in all directions, not {:.4g} and {:.4g} "
-            "N/m: give its group `prestress` as one number",
-            name, n[0], n[1]));
-      for (const auto& triangle : membrane.nodes.triangles()) {
-        form.triangles.push_back({form.local[triangle[0]], form.local[triangle[1]], form.local[triangle[2]]});
-        form.membranes.push_back(i);
-        stress.push_back(n[0]);
-      }
+            "form-finding: the cloth \"{}\" needs a prestress > 0 in all directions{}, not {:.4g} and {:.4g} "
+            "N/m: give its group `prestress`",
+            name, takes_unequal_stress(options.method) ? "" : ", one number", stress[0], stress[1]));
+      formfinding::FilmFacet facet{membrane.nodes, stress, model::axis_1(group)};
+      const auto local = [&](int k) { return form.local[membrane.nodes[k]]; };
+      facet.nodes = membrane.nodes.size() == 3 ? model::FacetNodes(local(0), local(1), local(2))
+                                               : model::FacetNodes(local(0), local(1), local(2), local(3));
+      form.film.push_back(facet);
+      form.membranes.push_back(i);
     }
-  form.surface_stress = Eigen::Map<const VecX>(stress.data(), static_cast<Eigen::Index>(stress.size()));
 }
 
 /// A support that holds one or two directions is a plane or line on which its nodes slide.
@@ -129,10 +146,11 @@ void check_load(const Context& context, const model::Load& load, const FormNet& 
                      !load.line_moment.isZero(0) || !load.surface_force.isZero(0) || load.pressure != 0 ||
                      load.heats() || !load.acceleration.isZero(0);
   if (other)
-    throw ModelError(fmt::format(
-        "{}: step \"{}\" names it, but form-finding takes no loads but forces on nodes (`force`); leave the others "
-        "to the equilibrium that follows",
-        load.title(), context.step_name));
+    throw ModelError(
+        fmt::format("{}: step \"{}\" names it, but form-finding takes no loads but forces on nodes "
+                    "(`force`); leave the others "
+                    "to the equilibrium that follows",
+                    load.title(), context.step_name));
   for (const int node : load.nodes)
     if (form.local[node] < 0)
       throw ModelError(fmt::format("{}: step \"{}\" names it, but the node at {} is no part of the net",
@@ -213,12 +231,20 @@ std::string FormNet::describe(const model::Model& structure, int branch) const {
                      place(structure.nodes[cable.nodes[0]]), place(structure.nodes[cable.nodes[1]]));
 }
 
+std::string FormNet::node_name(const Context& context, int node) const {
+  const auto i = static_cast<std::size_t>(nodes[static_cast<std::size_t>(node)]);
+  const std::string at = place(context.structure.nodes[i]);
+  const bool named = context.deck.model && i < context.deck.model->nodes.size();
+  return named ? fmt::format("node \"{}\" at {}", context.deck.model->nodes[i].first, at)
+               : fmt::format("the node at {}", at);
+}
+
 FormNet extract_net(const Context& context, const FormFindingOptions& options) {
   FormNet form;
   form.groups = net_groups(context, options);
   form.cloth = cloth_groups(context, options);
   add_branches(context.structure, form);
-  add_cloth(context.structure, form);
+  add_cloth(context, options, form);
   hold_nodes(context.structure, options, form);
   add_loads(context, options, form);
   bind_to_surface(context, options, form);

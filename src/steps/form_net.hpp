@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <tautline/formfinding/film_facet.hpp>
 #include <tautline/formfinding/net.hpp>
 #include <vector>
 
@@ -16,12 +17,11 @@ struct FormNet {
   std::vector<std::string> groups;  ///< of cables
   std::vector<std::string> cloth;   ///< of membranes
   formfinding::Net net;
-  std::vector<int> cables;                    ///< structure cable of each branch
-  std::vector<int> nodes;                     ///< structure node of each net node
-  std::vector<int> local;                     ///< net node of each structure node, or -1
-  std::vector<int> membranes;                 ///< structure membrane of each triangle
-  std::vector<std::array<int, 3>> triangles;  ///< of the cloth; a quadrilateral is two
-  VecX surface_stress;                        ///< of each triangle [N/m]
+  std::vector<int> cables;                   ///< structure cable of each branch
+  std::vector<int> nodes;                    ///< structure node of each net node
+  std::vector<int> local;                    ///< net node of each structure node, or -1
+  std::vector<int> membranes;                ///< structure membrane of each facet of the film
+  std::vector<formfinding::FilmFacet> film;  ///< the cloth
   std::unique_ptr<formfinding::Surface> own_surface;
   const formfinding::Surface* surface = nullptr;  ///< the reflector's, or own_surface; or null
   VecX force_density;  ///< of each branch, in place of the drawn one [N/m]; empty: as drawn
@@ -31,6 +31,8 @@ struct FormNet {
   std::vector<int> branches_of(const model::Model& structure, const std::vector<std::string>& names) const;
   /// Net nodes of the named groups and selections. @throws ModelError for a node outside the net
   std::vector<int> nodes_of(const model::Model& structure, const std::vector<std::string>& names) const;
+  /// "node "c" at (0, 0, 1)", or where it is drawn alone if the deck has no name for it.
+  std::string node_name(const Context& context, int node) const;
   /// "cable 3 of ridge, from (0, 0, 1) to (1, 0, 1)"
   std::string describe(const model::Model& structure, int branch) const;
 };

@@ -86,7 +86,8 @@ bool builds(const Step& step) {
 void judge_balance(Context& context, const Step& step, Json& entry) {
   const auto rounding = context.system().rounding();
   entry["balance"] = balance_json(context.system());
-  entry["rounding"] = {{"force", rounding.force}, {"moment", rounding.moment}};
+  entry["rounding"] = {{"force", rounding.force},
+                       {"moment", rounding.moment + rounding.force * context.system().size()}};
   const std::string reason = imbalance(entry["balance"]);
   if (reason.empty() || entry["status"] != "done") return;
   if (std::holds_alternative<ModalOptions>(step.options)) return context.warn("no_equilibrium", reason);

@@ -166,6 +166,7 @@ Json run_step(Context& context, const TuningStepOptions& step) {
   if (!context.surface) throw ModelError("tuning needs a reflector: this deck has none");
   auto& system = context.system();
   const auto ties = tuned_cables(context, options);
+  system.begin_stage(context.boundary({}, true));  // the influence of ties is that between the supports
   if (std::isnan(options.tension_min)) options.tension_min = 0.5 * least_tension(system, ties);
   auto error = measure(context);
   Json entry{{"status", "done"}, {"method", options.method == TuningMethod::rule ? "rule" : "sensitivity"}};

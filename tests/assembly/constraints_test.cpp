@@ -156,7 +156,8 @@ Tied tied_at_random(unsigned seed) {
   constexpr int n_beams = 5, n_nodes = 2 * n_beams + 3;
   Tied result;
   auto& model = result.model;
-  for (int i = 0; i < n_nodes; ++i) model.nodes.push_back(Vec3(2.0 * (i / 2), 1.5 * (i % 2), 0) + 0.4 * vector());
+  for (int i = 0; i < n_nodes; ++i)
+    model.nodes.push_back(Vec3(2.0 * (i / 2), 1.5 * (i % 2), 0) + 0.4 * vector());
   std::vector<bool> follows(n_nodes, false);
   for (int beam = 1; beam < n_beams; ++beam) {  // each hangs on one before it
     if (below(4) == 0) continue;
@@ -208,7 +209,8 @@ Tied tied_at_random(unsigned seed) {
   }
   result.boundary.supports = {support({0}, clamped)};
   for (int i = 1; i < n_nodes; ++i)
-    result.boundary.loads.push_back(load(i, 30 * vector(), model.rotational_nodes()[i] ? vector() : Vec3(Vec3::Zero())));
+    result.boundary.loads.push_back(
+        load(i, 30 * vector(), model.rotational_nodes()[i] ? vector() : Vec3(Vec3::Zero())));
   model::Load gas;
   gas.on = {"cloth"};
   gas.pressure = 4000;
@@ -249,10 +251,12 @@ TEST(Links, AnyMixtureOfTiesHoldsInAMovedState) {
     const auto x = model::positions(tied.model, state);
     for (const auto& link : tied.model.links) {
       const Vec3 arm = tied.model.nodes[link.follower] - tied.model.nodes[link.leader];
-      EXPECT_LT((x[link.follower] - x[link.leader] - state.rotation[link.leader] * arm).norm(), 1e-14) << seed;
+      EXPECT_LT((x[link.follower] - x[link.leader] - state.rotation[link.leader] * arm).norm(), 1e-14)
+          << seed;
     }
     for (const auto& pair : tied.model.cyclic_pairs)
-      EXPECT_LT((state.displacement[pair.follower] - pair.turn * state.displacement[pair.leader]).norm(), 1e-14);
+      EXPECT_LT((state.displacement[pair.follower] - pair.turn * state.displacement[pair.leader]).norm(),
+                1e-14);
     for (const auto& constraint : tied.model.constraints) {
       double sum = 0;
       for (const auto& term : constraint.terms)
@@ -276,8 +280,9 @@ TEST(LinearConstraint, IsRefusedWhereItCannotHold) {
   EXPECT_NE(refused({{{{3, 0, 1}, {2, 1, 1}}, {}}}).find("through an arm"), std::string::npos);
   EXPECT_NE(refused({{{{3, 0, 1}, {1, 1, 1}}, {}}, {{{1, 1, 1}, {3, 0, 1}}, {}}}).find("follows itself"),
             std::string::npos);
-  EXPECT_NE(refused({{{{3, 0, 1}, {1, 1, 1}}, {}}, {{{3, 0, 1}, {1, 2, 1}}, {}}}).find("another linear constraint"),
-            std::string::npos);
+  EXPECT_NE(
+      refused({{{{3, 0, 1}, {1, 1, 1}}, {}}, {{{3, 0, 1}, {1, 2, 1}}, {}}}).find("another linear constraint"),
+      std::string::npos);
   EXPECT_EQ(refused({{{{3, 0, 1}, {1, 1, 1}}, {}}, {{{3, 1, 1}, {3, 0, 1}}, {}}}), "");
 }
 

@@ -110,7 +110,8 @@ TEST(Deck, CarriesTheDigestOfItsBytes) {
 }
 
 TEST(Deck, FingerprintIsThatOfTheMeshFilesContent) {
-  const auto folder = std::filesystem::temp_directory_path() / fmt::format("tautline_fingerprint_{}", getpid());
+  const auto folder =
+      std::filesystem::temp_directory_path() / fmt::format("tautline_fingerprint_{}", getpid());
   std::filesystem::create_directories(folder);
   const auto fingerprint = [&](const std::string& mesh) {
     test::write_file(folder / "film.msh", mesh);

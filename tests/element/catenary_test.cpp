@@ -248,6 +248,17 @@ TEST(Catenary, AlmostInextensibleTautCableKeepsTheDigitsOfItsTension) {
   }
 }
 
+TEST(Catenary, LevelUnderWeightIceAndWindHangsInThePlaneOfItsWholeLoad) {
+  // sinh(u)/u = L/l = 1.02 at u = 0.3453787954983181: H = w l/(2 u), half of the load at either end
+  const double l = 10, L = 10.2, mass = 1.5, u = 0.3453787954983181;
+  const Vec3 ice(0, 0, -2), wind(0, 7, 0);
+  const auto cable = at_rest({1e15, L, mass, ice + wind}, gravity, Vec3(1, 2, 3), Vec3(1 + l, 2, 3));
+  const Vec3 whole = mass * gravity + ice + wind;
+  EXPECT_NEAR(cable.force[3], whole.norm() * l / (2 * u), 1e-10 * whole.norm() * l);
+  EXPECT_LT((cable.force.segment<2>(1) + L / 2 * whole.tail<2>()).norm(), 1e-12 * whole.norm());
+  EXPECT_LT((cable.force.segment<2>(4) + L / 2 * whole.tail<2>()).norm(), 1e-12 * whole.norm());
+}
+
 // --- equilibrium, objectivity, energy
 // --------------------------------------------------------------------------------------------
 

@@ -30,6 +30,7 @@ std::vector<Specimen> catenary_specimens() {
           catenary("CatenarySlack", {2000, 7, 0.5}, oblique),
           catenary("CatenaryOfItsChordsLength", {200, 4.226, 2}, oblique),
           catenary("CatenaryHangingSteeply", {200, 4, 2}, Vec3(4.5, 7, 0.2)),
+          catenary("CatenaryUnderWeightAndWind", {200, 4.5, 0.5, Vec3(1, -2, 3)}, oblique),
           catenary("CatenaryWithoutWeight", {2000, 4, 0}, oblique)};
 }
 

@@ -56,10 +56,9 @@ TEST_P(EachDamping, GuidedNodeReflectsEqualTensions) {
 
 TEST_P(EachDamping, FilmWithEdgeCablesComesToRestAsTheMinimalFilm) {
   ElasticNet net;
-  add_grid(6, net.net, net.triangles);
+  net.film = add_film_grid(6, net.net, 1);
   net.tension = VecX::Constant(net.net.branches.size(), 3);
-  net.surface_stress = VecX::Constant(net.triangles.size(), 1);
-  const FilmResult film = find_minimal_film({net.net, net.triangles, net.surface_stress, net.tension, {}});
+  const FilmResult film = find_minimal_film({net.net, net.film, net.tension, {}});
   ASSERT_TRUE(film.converged) << film.reason;
   DynamicRelaxationOptions options = with(GetParam());
   options.tolerance = 1e-7;
@@ -69,8 +68,10 @@ TEST_P(EachDamping, FilmWithEdgeCablesComesToRestAsTheMinimalFilm) {
   // minimum there and feels that in second order only.
   const auto energy = [&](const Points& nodes) {
     double sum = 0;
-    for (const auto& [a, b, c] : net.triangles)
-      sum += 0.5 * (nodes[b] - nodes[a]).cross(nodes[c] - nodes[a]).norm();
+    for (const auto& facet : net.film) {
+      const auto& n = facet.nodes;
+      sum += 0.5 * (nodes[n[1]] - nodes[n[0]]).cross(nodes[n[2]] - nodes[n[0]]).norm();
+    }
     for (const auto& [a, b] : net.net.branches) sum += 3 * (nodes[b] - nodes[a]).norm();
     return sum;
   };
@@ -127,11 +128,10 @@ TEST(ElasticNet, InputThatMakesNoSenseIsNamed) {
   ElasticNet net = elastic_pair();
   net.unstressed_length[1] = 0;
   EXPECT_EQ(error_of([&] { relax(net); }),
-            "the axial stiffness and unstressed length of branch 1 must be positive");
+            "the axial stiffness and unstressed length of branch 2 must be positive");
   net = elastic_pair();
-  net.triangles = {{0, 1, 5}};
-  net.surface_stress = VecX::Ones(1);
-  EXPECT_EQ(error_of([&] { relax(net); }), "triangle 0 names node 5, but the net has 3 nodes");
+  net.film = {{{0, 1, 5}, {1, 1}}};
+  EXPECT_EQ(error_of([&] { relax(net); }), "facet 1 of the film names node 6, but the net has 3 nodes");
 }
 
 }  // namespace

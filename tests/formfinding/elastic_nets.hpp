@@ -3,6 +3,7 @@
 
 #include <formfinding/nets.hpp>
 #include <tautline/formfinding/elastic_net.hpp>
+#include <tautline/formfinding/film_facet.hpp>
 
 namespace tautline::formfinding {
 
@@ -38,6 +39,13 @@ inline void add_grid(int n, Net& net, std::vector<std::array<int, 3>>& triangles
     net.branches.push_back({at(0, i), at(0, i + 1)});
     net.branches.push_back({at(n, i), at(n, i + 1)});
   }
+}
+
+/// The same as a film with one stress in all directions [N/m].
+inline std::vector<FilmFacet> add_film_grid(int n, Net& net, double stress) {
+  std::vector<std::array<int, 3>> triangles;
+  add_grid(n, net, triangles);
+  return isotropic_film(triangles, VecX::Constant(static_cast<Eigen::Index>(triangles.size()), stress));
 }
 
 }  // namespace tautline::formfinding

@@ -23,11 +23,10 @@ Film catenoid(int around, int along) {
   for (int k = 0; k < along; ++k) {
     for (int i = 0; i < around; ++i) {
       const int shift = k % 2;  // rows are turned by half a step
-      film.triangles.push_back({at(i, k), at(i + 1, k), at(i + shift, k + 1)});
-      film.triangles.push_back({at(i + 1 - shift, k), at(i + 1, k + 1), at(i, k + 1)});
+      film.facets.push_back({{at(i, k), at(i + 1, k), at(i + shift, k + 1)}, {2, 2}});
+      film.facets.push_back({{at(i + 1 - shift, k), at(i + 1, k + 1), at(i, k + 1)}, {2, 2}});
     }
   }
-  film.surface_stress = VecX::Constant(film.triangles.size(), 2.0);
   return film;
 }
 
@@ -52,9 +51,8 @@ TEST(MinimalFilm, EdgeCableOfAFlatFilmIsAnArc) {
   // middles of the sides touch that circle exactly, and the sides are equal.
   Film film;
   const int n = 8;
-  add_grid(n, film.net, film.triangles);
+  film.facets = add_film_grid(n, film.net, 2);
   for (Vec3& node : film.net.nodes) node.z() = 0;
-  film.surface_stress = VecX::Constant(film.triangles.size(), 2.0);
   film.cable_tension = VecX::Constant(film.net.branches.size(), 6.0);
   MinimalFilmOptions options;
   options.tolerance = 1e-11;
@@ -78,14 +76,13 @@ TEST(MinimalFilm, EdgeCableOfAFlatFilmIsAnArc) {
 double scherk_error(int n) {
   const auto scherk = [](const Vec3& p) { return std::log(std::cos(p.y()) / std::cos(p.x())); };
   Film film;
-  add_grid(n, film.net, film.triangles);
+  film.facets = add_film_grid(n, film.net, 1);
   film.net.branches.clear();
   for (std::size_t i = 0; i < film.net.nodes.size(); ++i) {
     Vec3& p = film.net.nodes[i];
     film.net.fixed[i] = std::max(std::abs(p.x()), std::abs(p.y())) == 1;
     p.z() = scherk(p) + 0.05 * (1 - p.x() * p.x()) * (1 - p.y() * p.y());
   }
-  film.surface_stress = VecX::Constant(film.triangles.size(), 1.0);
   const FilmResult result = find_minimal_film(film);
   EXPECT_TRUE(result.converged) << result.reason;
   double largest = 0;
@@ -101,12 +98,11 @@ TEST(MinimalFilm, ScherkSurfaceIsApproachedWithTheSquareOfTheSide) {
 
 TEST(MinimalFilm, TriangleWithoutAreaIsNamed) {
   Film film;
-  add_grid(2, film.net, film.triangles);
-  film.surface_stress = VecX::Ones(film.triangles.size());
+  film.facets = add_film_grid(2, film.net, 1);
   film.cable_tension = VecX::Ones(film.net.branches.size());
   film.net.nodes.assign(film.net.nodes.size(), Vec3::Zero());
   EXPECT_EQ(error_of([&] { find_minimal_film(film); }),
-            "triangle 0 of nodes 0, 3, 4 has no area at the start");
+            "the facet of the film between node 1, 4, 5 has no area at the start");
 }
 
 TEST(UniformTension, FixedPointFindsTheGeodesicOfACable) {

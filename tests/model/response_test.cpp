@@ -1,4 +1,5 @@
 #include <cmath>
+#include <tautline/model/beam_ends.hpp>
 #include <tautline/model/response.hpp>
 
 #include "model/models.hpp"
@@ -59,6 +60,26 @@ TEST(GroupSummary, OfAGroupWithoutElementsIsZero) {
   EXPECT_EQ(summary.count, 0);
   EXPECT_EQ(summary.principal_min, 0);
   EXPECT_EQ(summary.principal_max, 0);
+}
+
+/// A mast of one beam, 4 m high, whose weight of 30 N/m its two ends share: nothing is moved, so that each
+/// end carries half, in compression below and in tension above.
+TEST(GroupSummary, HasTheAxialForceOfBothEndsOfABeamWhicheverComesFirst) {
+  for (const bool upwards : {true, false}) {
+    Model model;
+    model.nodes = {{0, 0, 0}, {0, 0, 4}};
+    const int mast = add_beam_group(model, "mast");
+    add_beam(model, mast, upwards ? 0 : 1, upwards ? 1 : 0);
+    model.beams[0].line_load = {7, 0, -30};
+    const auto response = evaluate_response(model, State::reference(model));
+    const auto summary = summarise_groups(model, response).at("mast");
+    EXPECT_NEAR(summary.axial_min, -60, 1e-9);
+    EXPECT_NEAR(summary.axial_max, 60, 1e-9);
+    const Vec3 start = first_end_force(model, response, 0);
+    EXPECT_NEAR(start[0], upwards ? -60 : 60, 1e-9);
+    EXPECT_NEAR(start.tail<2>().norm(), 14, 1e-9);
+    EXPECT_NEAR(start[0], -response.beams[0].axial, 1e-9);
+  }
 }
 
 TEST(Response, OfAPrestressedMembraneAtRestIsItsPrestress) {

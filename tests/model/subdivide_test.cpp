@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <numeric>
 #include <set>
+#include <type_traits>
 #include <tautline/core/error.hpp>
+#include <tautline/model/section.hpp>
 #include <tautline/model/subdivide.hpp>
 
 #include "messages.hpp"
@@ -241,6 +243,68 @@ TEST(Subdivision, LetsSupportsFollowTheElementsTheyAreOn) {
   EXPECT_EQ(mesh.supports[0].nodes, (std::vector<int>{3, 4}));
   EXPECT_EQ(mesh.supports[1].nodes, mesh.select("ridge").nodes);
   EXPECT_EQ(mesh.supports[1].nodes.size(), 5u);
+}
+
+/// One warped quadrilateral: corners alternately 0 and `rise` high, 2 m apart, turned by `turn`.
+template <class Facets>
+Model warped(Facets Model::*facets, double rise, const std::array<double, 2>& prestress, const Mat3& turn) {
+  Model model;
+  model.nodes = {turn * Vec3(0, 0, 0), turn * Vec3(2, 0, rise), turn * Vec3(2, 2, 0),
+                 turn * Vec3(0, 2, rise)};
+  auto& group = model.groups.emplace_back();
+  group.name = "facet";
+  group.kind = std::is_same_v<Facets, std::vector<Shell>> ? ElementKind::shell : ElementKind::membrane;
+  group.orientation = turn * Vec3(2, 1, 0);
+  (model.*facets).emplace_back().nodes = FacetNodes(0, 1, 2, 3);
+  GroupOptions options;
+  options.prestress = prestress;
+  set_initial_state(model, 0, options);
+  return model;
+}
+
+template <class Facets>
+void expect_prestress_as_asked(Facets Model::*facets) {
+  const std::array<double, 2> asked{3000, 2000};
+  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix();
+  for (const double rise : {0.0, 1.0, 3.0})
+    for (const int n : {1, 2, 5}) {
+      const auto structure = warped(facets, rise, asked, turn);
+      const auto mesh = subdivide(structure, parts(n));
+      for (const auto& facet : mesh.*facets) {
+        Mat<3, 4> x;
+        for (int k = 0; k < 4; ++k) x.col(k) = mesh.nodes[facet.nodes[k]];
+        const Mat3 frame = element::membrane_frame<4>(x);
+        const Vec3 wish = turn * Vec3(2, 1, 0);
+        const Vec3 axis = (wish - wish.dot(frame.col(2)) * frame.col(2)).normalized();
+        const Vec<2> local = frame.leftCols<2>().transpose() * axis;
+        Mat<2> tensor;
+        tensor << facet.prestress[0], facet.prestress[2], facet.prestress[2], facet.prestress[1];
+        EXPECT_LT((tensor * local - 3000 * local).norm(), 1e-9) << rise << " " << n;
+        EXPECT_NEAR(tensor.trace(), 5000, 1e-9);
+      }
+    }
+}
+
+TEST(Subdivision, PrestressOfAWarpedMembraneStaysWhatWasAskedFor) {
+  expect_prestress_as_asked(&Model::membranes);
+}
+
+TEST(Subdivision, PrestressOfAWarpedShellStaysWhatWasAskedFor) {
+  expect_prestress_as_asked(&Model::shells);
+}
+
+TEST(Subdivision, WithoutAProjectionPrestressTurnsWithTheNormal) {
+  // The orientation stands on the facet; a tensor of its own, as form-finding leaves it.
+  auto structure = warped(&Model::membranes, 0.5, {1, 1}, Mat3::Identity());
+  structure.groups[0].orientation = Vec3::UnitZ();
+  structure.membranes[0].prestress = Vec3(3, 1, 0.5);
+  const Eigen::Vector2d whole(2 + std::sqrt(1.25), 2 - std::sqrt(1.25));
+  for (const auto& m : subdivide(structure, parts(3)).membranes) {
+    const double mean = (m.prestress[0] + m.prestress[1]) / 2,
+                 radius = std::hypot((m.prestress[0] - m.prestress[1]) / 2, m.prestress[2]);
+    EXPECT_NEAR(mean + radius, whole[0], 1e-12);
+    EXPECT_NEAR(mean - radius, whole[1], 1e-12);
+  }
 }
 
 TEST(Subdivision, LeavesASupportOnExplicitNodesWhereItIs) {

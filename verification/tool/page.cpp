@@ -115,7 +115,7 @@ std::string case_page(const CaseResults& results) {
   return page;
 }
 
-std::string overview_page(const std::vector<CaseResults>& cases) {
+std::string overview_page(const std::vector<CaseResults>& cases, const std::string& source) {
   std::string page =
       "<!-- Made by tautline_verify; do not edit. -->\n\n# Verification\n\nWhat the program computes beside "
       "what is known. Each reference "
@@ -132,7 +132,7 @@ std::string overview_page(const std::vector<CaseResults>& cases) {
     page += header;
     for (const auto& r : c.results) page += row(r, "");
   }
-  return page;
+  return page + "\n" + read_file(source + "/verification/mutants.md");
 }
 
 }  // namespace verify

@@ -26,7 +26,7 @@ std::string verdict(const Result& result);
 
 /// README of the case, its table, its notes, how it was run.
 std::string case_page(const CaseResults& results);
-/// All cases in one table.
-std::string overview_page(const std::vector<CaseResults>& cases);
+/// All cases, a table each, and what verification/mutants.md in `source` says of how much the tests notice.
+std::string overview_page(const std::vector<CaseResults>& cases, const std::string& source);
 
 }  // namespace verify

@@ -91,10 +91,11 @@ void write(const std::string& path, const std::string& text) {
   if (!file.flush()) throw std::runtime_error("cannot write " + path);
 }
 
-void write_pages(const std::string& directory, const std::vector<CaseResults>& cases) {
+void write_pages(const std::string& directory, const std::vector<CaseResults>& cases,
+                 const std::string& source) {
   for (const auto& c : cases)
     write(fmt::format("{}/verification/{}.md", directory, c.the_case.name), case_page(c));
-  if (cases.size() > 1) write(directory + "/verification.md", overview_page(cases));
+  if (cases.size() > 1) write(directory + "/verification.md", overview_page(cases, source));
 }
 
 int run_all(const Settings& settings) {
@@ -106,9 +107,10 @@ int run_all(const Settings& settings) {
     fmt::print("{}\n", name);
     passed = print(cases.back()) && passed;
   }
-  write_pages(settings.program.work + "/docs", cases);
+  write_pages(settings.program.work + "/docs", cases, settings.program.source);
   if (settings.write_docs && !all) throw std::runtime_error("--write-docs is for all cases together");
-  if (settings.write_docs && passed) write_pages(settings.program.source + "/docs", cases);
+  if (settings.write_docs && passed)
+    write_pages(settings.program.source + "/docs", cases, settings.program.source);
   return passed ? 0 : 1;
 }
 

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,7 +38,7 @@ struct OutOfBalance {
 
 /// What acts on the model at one end of a stage, node by node, facet by facet, group by group.
 struct Acting {
-  Points force, moment;              ///< dead nodal loads, of all kinds together [N], [N m]
+  Points force, moment;  ///< dead nodal loads, of all kinds together [N], [N m]
   Points line;  ///< along each cable (of catenaries, without weight), then beam (in `force` already) [N/m]
   std::vector<double> pressure;      ///< on membranes, then shells [Pa]
   std::vector<double> temperature;   ///< change of cables, then beams, membranes, shells [K]
@@ -72,7 +73,6 @@ struct Place : analysis::PathProblem::Kept {
 struct Rest {
   model::State state;
   Acting acting;
-  std::vector<Vec3> turned;              ///< rotation vectors of supports so far, by node [rad]
   std::vector<double> stiffness_factor;  ///< of the cables, see model::Cable
 };
 
@@ -244,8 +244,13 @@ class System : public analysis::PathProblem {
   /// structure as drawn, wherever it is now.
   Acting acting(const Boundary& boundary, const std::vector<double>& strains) const;
   void add_element_loads(const model::Load& load, Acting& to) const;
-  /// Compares what each load is by its definition with what acts of it. @throws std::logic_error if they differ
+  /// Compares what each load is by its definition with what acts of it. @throws std::logic_error if they
+  /// differ
   void audit_loads(const Boundary& boundary, const std::vector<double>& strains) const;
+  /// The same along the axes of supports, moments about them also where rotations are held in part.
+  std::vector<double> nodal_imbalance() const;
+  std::set<int> turned_nodes(const Boundary& boundary) const;
+  Vec3 spin_to(int node, const Vec3& target) const;
   void find_drives(const Boundary& boundary);
   void note_prescribed(const Boundary& boundary);
   /// Increments of all unknowns from the point accepted last to x; what supports prescribe is where lambda
@@ -270,6 +275,8 @@ class System : public analysis::PathProblem {
   /// Norms over the nodes of forces and of moments, of `value(block, component)` in this rank's blocks.
   template <class Value>
   Vec<2> norms_by_kind(const Value& value) const;
+  /// Whether a dead load on a node adds to the tangent: at the end of an arm, or on a rotation vector.
+  bool load_bends(int node) const;
   /// Tangent with what each element adds given by `contribution_of(element)`.
   template <class ContributionOf>
   void assemble_tangent(la::SymmetricMatrix& k, const ContributionOf& contribution_of);
@@ -291,7 +298,6 @@ class System : public analysis::PathProblem {
   std::vector<double> start_residual_;  // of all unknowns, ramped out
   std::vector<Drive> drives_;
   std::map<int, Prescribed> prescribed_;  // by node, for the check
-  std::vector<Vec3> turned_;              // rotation vectors of driven nodes so far [rad], by node
   std::optional<std::vector<double>> wanted_strain_;
   double lambda_ = 1, driven_to_ = 0, committed_drive_ = 0, size_ = 1;
   double support_stiffness_ = 1;

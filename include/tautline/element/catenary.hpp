@@ -1,6 +1,7 @@
 #pragma once
 /// @file
-/// Elastic catenary: a whole cable with its own weight and other dead loads along it as one element. Theory: docs/theory/catenary.md
+/// Elastic catenary: a whole cable with its own weight and other dead loads along it as one element. Theory:
+/// docs/theory/catenary.md
 
 #include <tautline/core/types.hpp>
 #include <tautline/element/want.hpp>

@@ -15,18 +15,17 @@ struct RelaxationResult {
   Points nodes;               ///< [m]
   VecX tension;               ///< of the branches [N]; slack: 0
   double out_of_balance = 0;  ///< largest force at a free node along the directions in equilibrium [N]
-  /// If converged, of the side opposite to each corner of every triangle [N/m], see FilmResult.
-  Points side_force_density;
-  int iterations = 0;        ///< time steps, those of the pilot run apart
-  int pilot_iterations = 0;  ///< viscous: time steps of the run without damping
-  double period = 0;         ///< viscous: of the slowest oscillation, as estimated last [time steps]
-  int n_peaks = 0;           ///< kinetic: times the motion was stopped
+  Points stress;              ///< of each facet of the film, see FilmResult [N/m]
+  int iterations = 0;         ///< time steps, those of the pilot run apart
+  int pilot_iterations = 0;   ///< viscous: time steps of the run without damping
+  double period = 0;          ///< viscous: of the slowest oscillation, as estimated last [time steps]
+  int n_peaks = 0;            ///< kinetic: times the motion was stopped
 };
 
 /// @brief Rest of the net: elastic cables, constant tensions and films together; guides are respected.
 ///
-/// Nodes of films that no cable meets move along the normal of the film only: along it a film of constant
-/// stress is indifferent.
+/// At nodes of films that no cable meets the film's force counts along its normal only, see
+/// find_minimal_film.
 /// @throws ModelError if the net makes no sense
 RelaxationResult relax(const ElasticNet& net, const DynamicRelaxationOptions& options = {});
 

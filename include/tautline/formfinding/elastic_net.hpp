@@ -1,26 +1,27 @@
 #pragma once
 /// @file
-/// A net of elastic cables with unstressed lengths, cables of constant tension, and films of constant surface
-/// stress; its equilibrium by Newton's method (the stiffness-matrix method, Belov 2021, eqs 1.5-1.9).
+/// A net of elastic cables with unstressed lengths, cables of constant tension, and films of given stress;
+/// its equilibrium by Newton's method (the stiffness-matrix method, Belov 2021, eqs 1.5-1.9).
 
-#include <array>
 #include <string>
 #include <tautline/formfinding/elastic_net_options.hpp>
+#include <tautline/formfinding/film_facet.hpp>
 #include <tautline/formfinding/net.hpp>
 #include <vector>
 
 namespace tautline::formfinding {
 
 /// Each branch is either elastic, T = EA (L / L0 - 1), a cable slack where that is negative, or has a
-/// tension.
+/// tension, or a force density.
 struct ElasticNet {
-  Net net;                                         ///< its nodes are the start
-  VecX axial_stiffness;                            ///< EA of every branch [N]
-  VecX unstressed_length;                          ///< L0 of every branch [m]
-  VecX tension = {};                               ///< constant tension [N]; NaN: elastic; empty: all elastic
-  std::vector<std::array<int, 3>> triangles = {};  ///< of films, node indices
-  VecX surface_stress = {};                        ///< of every triangle, the same in all directions [N/m]
-  std::vector<bool> carries_compression = {};      ///< branches that are bars; empty: none
+  Net net;                                     ///< its nodes are the start
+  VecX axial_stiffness;                        ///< EA of every branch [N]
+  VecX unstressed_length;                      ///< L0 of every branch [m]
+  VecX tension = {};                           ///< constant tension [N]; NaN: elastic; empty: all elastic
+  std::vector<FilmFacet> film = {};            ///< facets of given stress
+  std::vector<bool> carries_compression = {};  ///< branches that are bars; empty: none
+  VecX force_density =
+      {};  ///< constant, of branches that are not elastic and have no tension [N/m]; empty: none
 };
 
 struct ElasticResult {

@@ -73,11 +73,24 @@ inline element::BeamSection beam_section(const Model& model, const Beam& beam) {
   return group.taper ? tapered_section(*group.taper, (beam.span[0] + beam.span[1]) / 2) : group.beam;
 }
 
-/// Angle from axis 1 of a facet's frame to the projection of `direction` on its plane [rad]; 0 if there is
-/// none.
+/// Membranes and shells: direction whose projection is axis 1 of material and prestress; x unless stated.
+inline Vec3 axis_1(const Group& group) {
+  return group.orientation.isZero() ? Vec3(Vec3::UnitX()) : group.orientation;
+}
+
+/// Whether `direction` has a projection on the plane of a facet's frame.
+inline bool has_projection(const Mat3& frame, const Vec3& direction) {
+  return std::hypot(frame.col(0).dot(direction), frame.col(1).dot(direction)) > 1e-6 * direction.norm();
+}
+
+/// @brief Angle from axis 1 of a facet's frame to the projection of `direction` on its plane [rad].
+///
+/// A direction without one is replaced by x, and that by z: what follows from the numbering of the nodes is
+/// no direction of a material.
 inline double angle_in(const Mat3& frame, const Vec3& direction) {
-  const double along = frame.col(0).dot(direction), across = frame.col(1).dot(direction);
-  return std::hypot(along, across) <= 1e-6 * direction.norm() ? 0.0 : std::atan2(across, along);
+  for (const Vec3& wish : {direction, Vec3(Vec3::UnitX())})
+    if (has_projection(frame, wish)) return std::atan2(frame.col(1).dot(wish), frame.col(0).dot(wish));
+  return std::atan2(frame(2, 1), frame(2, 0));
 }
 
 template <int N>
@@ -85,7 +98,7 @@ element::MembraneLaw membrane_law(const Model& model, const Membrane& membrane) 
   const Group& group = model.groups[membrane.group];
   const double angle =
       group.membrane.orthotropic()
-          ? angle_in(element::membrane_frame<N>(reference_nodes<N>(model, membrane.nodes)), group.orientation)
+          ? angle_in(element::membrane_frame<N>(reference_nodes<N>(model, membrane.nodes)), axis_1(group))
           : 0.0;
   return element::membrane_law(group.membrane, angle, membrane.prestress, membrane.temperature_change);
 }

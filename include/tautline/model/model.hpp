@@ -156,6 +156,7 @@ struct Support {
   std::vector<int> nodes;
   std::array<bool, 6> fixed{true, true, true, true, true, true};
   Mat3 axes = Mat3::Identity();  ///< columns: the directions x, y, z that `fixed` means
+  bool symmetry = false;         ///< the deck says so: the structure goes on as its mirror image beyond x
 };
 
 /// "file:line:column: ", or nothing if no place in a deck is known.
@@ -252,8 +253,8 @@ void for_each_kind(AnyModel&& model, const Visit& visit) {
 /// Indices of the links, each after the one that its leader follows. @throws ModelError for a ring of links
 std::vector<int> links_in_order(const Model& model);
 
-/// Unit normals at the nodes of every shell: the mean over the shells of the same group that meet there at
-/// less than 20 degrees, else the shell's own. In a plane of symmetry (a support) it lies in the plane.
+/// Unit normals at the nodes of every shell: the mean over all shells that go on from it there, from side to
+/// side at less than 20 degrees, through planes of symmetry and cyclic faces as inside.
 void find_directors(Model& model);
 
 /// Mass of all elements [kg], and per group.

@@ -183,6 +183,7 @@ struct SupportOptions {
   std::vector<std::string> on;  ///< groups, selections
   std::array<bool, 6> fixed{true, true, true, true, true, true};
   Mat3 axes = Mat3::Identity();  ///< columns: directions that x, y, z of `fixed` mean
+  bool symmetry = false;         ///< `fix: symmetry`
   SourceLocation where;
 };
 

@@ -2,6 +2,7 @@
 /// @file
 /// Section library: from dimensions and material to the stiffnesses an element needs.
 
+#include <array>
 #include <map>
 #include <string>
 
@@ -17,6 +18,10 @@ ElementKind kind_of(const SectionOptions& section);
 
 /// Section of a tapered tube at `place` along it, 0 at its start and 1 at its end.
 element::BeamSection tapered_section(const TaperedTube& tube, double place);
+
+/// @brief Resultants (N11, N22, N12) in the axes of a facet's `frame` for given ones along the projection of
+/// `orientation` on it and across [N/m].
+Vec3 along_orientation(const Mat3& frame, const Vec3& orientation, const std::array<double, 2>& resultants);
 
 /// Fills the section of `group` (kind and stiffnesses) from its options.
 /// Rectangle: torsion constant by Roark's approximation (0.5 %), shear factor 5/6. Round bar and tube: shear

@@ -13,6 +13,8 @@ struct State {
   Points displacement;         ///< one for each node [m]
   std::vector<Mat3> rotation;  ///< one for each node; identity where the node has no rotations
   Points hinge_angle;          ///< one for each link: angles about its hinge axes [rad]
+  /// One for each node: rotation vector that its supports prescribe or hold, any number of turns [rad]
+  Points turn;
 
   /// The reference configuration of `model`.
   static State reference(const Model& model);

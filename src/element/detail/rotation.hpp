@@ -1,20 +1,14 @@
 #pragma once
 /// @file
-/// Rotation vectors and their differentials. Spins are spatial: R -> exp(skew(w)) R. Theory:
+/// Differentials of rotation vectors. Spins are spatial: R -> exp(skew(w)) R. Theory:
 /// docs/theory/beam.md
 
-#include <tautline/core/types.hpp>
+#include <tautline/core/rotation.hpp>
 
 namespace tautline::element::detail {
 
-inline Mat3 skew(const Vec3& v) {
-  Mat3 matrix;
-  matrix << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
-  return matrix;
-}
-
-/// Rotation vector of an orthogonal matrix, |theta| <= pi; small rotations keep their digits.
-Vec3 rotation_vector(const Mat3& rotation);
+using tautline::rotation_vector;
+using tautline::skew;
 
 /// @brief Differential of the rotation vector with respect to the spin, d theta = T^-1(theta) w.
 ///
