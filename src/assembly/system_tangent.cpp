@@ -214,7 +214,8 @@ void System::assemble_tangent(la::SymmetricMatrix& k, const ContributionOf& cont
   const Stopwatch watch(assembly_seconds_);
   kinematics_.linearise(state_);
   k.set_zero();
-  for_each_stiffness(contribution_of, [&](const auto& nodes, bool rotations, const auto& force, auto& values) {
+  for_each_stiffness(contribution_of, [&](const auto& nodes, bool rotations, const auto& force,
+                                          auto& values) {
     const Expansion expansion(kinematics_, map_, nodes, rotations);
     if (expansion.plain()) return add_free(expansion.blocks(), values, held(), k);
     const MatX& b = expansion.matrix();

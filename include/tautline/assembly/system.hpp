@@ -267,8 +267,8 @@ class System : public analysis::PathProblem {
   std::span<const double> own_part(const std::vector<double>& all) const;
   std::vector<double> gathered(const std::vector<double>& own_complete) const;
   void apply(double lambda);
-  /// Calls `visit(nodes, rotations, force, tangent)` for all that resists on this rank, with what each element
-  /// adds given by `contribution_of(element)`.
+  /// Calls `visit(nodes, rotations, force, tangent)` for all that resists on this rank, with what each
+  /// element adds given by `contribution_of(element)`.
   template <class ContributionOf, class Visit>
   void for_each_stiffness(const ContributionOf& contribution_of, const Visit& visit) const;
   model::Rounding rounding_beside(const Vec<2>& forces_and_moments) const;
