@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 
 #include <tautline/analysis/stability.hpp>
+#include <tautline/core/error.hpp>
+#include <tautline/core/interrupt.hpp>
+#include <tautline/la/session.hpp>
 
 #include "analysis/bordered.hpp"
 
@@ -14,6 +17,7 @@ namespace tautline::analysis {
 namespace {
 
 constexpr double nothing = 1e-12;  // a load below this part of the forces that are there
+constexpr double blind = 1e-12;    // a metric that sees less than this part of the squared size of a motion
 
 Increment copy_of(const Increment& other) {
   Increment result{la::Vector::like(other.x), other.lambda};
@@ -34,12 +38,14 @@ class Walk {
         watch_(watch),
         callback_(callback),
         weights_(problem.layout()),
+        drive_(problem.layout()),
         tangent_{la::Vector(problem.layout()), 1},
         start_(start),
         lambda_(start.lambda) {}
 
   PathSummary run() {
-    problem_.weights(options_.rotation_weight, weights_);
+    weigh(options_.rotation_weight);
+    problem_.drive_rate(drive_);
     problem_.set_lambda(lambda_);
     problem_.commit();
     here_ = problem_.keep();
@@ -97,23 +103,41 @@ class Walk {
     return norms.force <= nothing * norms.reference_force && norms.moment <= nothing * norms.reference_moment;
   }
 
+  void weigh(double rotation_weight) {
+    rotation_weight_ = rotation_weight;
+    problem_.weights(rotation_weight, weights_);
+    psi2_ = problem_.drive_size(rotation_weight);
+  }
+
+  /// What steps are measured in: the motion of free and of prescribed unknowns, and lambda if asked for. A
+  /// path that turns only, where rotations are not to count, is measured in rotations all the same; one on
+  /// which nothing moves, in lambda.
+  void choose_metric() {
+    if (is_nothing() && problem_.drive_size(1) == 0) {
+      psi2_ = 1;
+      return;
+    }
+    const double seen = size_squared(tangent_);
+    weigh(1);
+    if (seen > blind * size_squared(tangent_)) weigh(options_.rotation_weight);
+    if (options_.constraint == ArcConstraint::spherical) psi2_ += size_squared(tangent_);
+  }
+
   bool begin() {
-    if (!find_tangent() || is_nothing()) {
-      end(false, workspace_.solver.failure().empty()
-                     ? "the loads of the path move nothing"
-                     : "the tangent stiffness is singular at the start: " + workspace_.solver.failure());
+    const bool regular = find_tangent();
+    if (!regular || (is_nothing() && !problem_.changes_at_rest())) {
+      end(false, regular ? "the loads of the path move nothing"
+                         : "the tangent stiffness is singular at the start: " + workspace_.solver.failure());
       summary_.singular = true;
       return false;
     }
-    if (options_.constraint == ArcConstraint::spherical) {
-      psi2_ = 0;
-      psi2_ = size_squared(tangent_);
-    }
+    choose_metric();
     length_ = first_length_ = options_.first_step * std::sqrt(size_squared(tangent_));
     return true;
   }
 
   bool go_on(const ArcPlace& place) {
+    weigh(place.rotation_weight);
     psi2_ = place.lambda_weight;
     length_ = place.length;
     first_length_ = place.first_length;
@@ -163,6 +187,7 @@ class Walk {
   }
 
   void advance() {
+    if (la::true_on_any_rank(interrupt_requested())) throw Interrupted();
     if (points() >= options_.max_points)
       return end(true, fmt::format("{} points were found, as many as max_points allows", points()));
     Increment step = copy_of(tangent_);
@@ -187,7 +212,7 @@ class Walk {
     summary_.singular = newton.status == NewtonStatus::singular;
     length_ /= 2;
     problem_.return_to(*here_);
-    if (length_ < options_.smallest_step * first_length_)
+    if (!(length_ > options_.smallest_step * first_length_))  // also where a length is zero or no number
       end(false, fmt::format("stopped at lambda = {:.6g} after {} points: the step fell below {:.0e} of the "
                              "first; the last attempt failed because {}",
                              lambda_, points(), options_.smallest_step, newton.reason));
@@ -212,9 +237,10 @@ class Walk {
       return true;
     }
     if (!watch_ || !options_.displacement) return false;
-    const double way = watch_->c.dot(step.x), left = *options_.displacement - watched_;
+    const double driven = watch_->c.dot(drive_), left = *options_.displacement - watched_;
+    const double way = watch_->c.dot(step.x) + driven * step.lambda;
     if (left * (left - way) > 0 || left == 0) return false;
-    if (!step_anew(step, newton, PlaneCondition(watch_->c, 0, left), left / way)) return false;
+    if (!step_anew(step, newton, PlaneCondition(watch_->c, driven, left), left / way)) return false;
     landing_ = fmt::format("the displacement {:.6g} m was reached at lambda = {:.6g} after {} points",
                            *options_.displacement, lambda_ + step.lambda, points() + 1);
     return true;
@@ -248,7 +274,7 @@ class Walk {
   }
 
   void note(const NewtonSummary& newton) {
-    const ArcPlace place{length_,      first_length_,     psi2_,        direction_,
+    const ArcPlace place{length_,      first_length_,     psi2_,        rotation_weight_, direction_,
                          points() + 1, critical_points(), bifurcations_};
     summary_.points.push_back({lambda_, newton, negative_, place});
     if (callback_.converged) callback_.converged(summary_.points.back());
@@ -346,6 +372,7 @@ class Walk {
       step.x.scale(amplitude);
       const auto newton = solve(PlaneCondition(along_mode, 0, amplitude * size), step);
       if (!newton.converged()) continue;
+      if (options_.constraint == ArcConstraint::cylindrical) weigh(rotation_weight_);
       length_ = first_length_ = std::abs(amplitude) * std::sqrt(size);
       arrive(step);
       note(newton);
@@ -362,11 +389,11 @@ class Walk {
   const std::optional<Watch>& watch_;
   const PathCallback& callback_;
   PathSummary summary_;
-  la::Vector weights_;
-  Increment tangent_;  // the direction of the path for a unit of lambda
+  la::Vector weights_, drive_;  // drive_: what prescribed unknowns go in a unit of lambda
+  Increment tangent_;           // the direction of the path for a unit of lambda
   const PathStart& start_;
   std::shared_ptr<const PathProblem::Kept> here_;
-  double lambda_, psi2_ = 0, length_ = 0, first_length_ = 0, watched_ = 0;
+  double lambda_, rotation_weight_ = 1, psi2_ = 0, length_ = 0, first_length_ = 0, watched_ = 0;
   int negative_ = 0, bifurcations_ = 0;
   int direction_ = 1;  // in which the next step goes along the tangent
   bool ended_ = false;

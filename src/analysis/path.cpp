@@ -7,7 +7,13 @@
 #include <fmt/format.h>
 
 #include <tautline/analysis/descent.hpp>
+#include <tautline/analysis/relaxation.hpp>
 #include <tautline/analysis/stability.hpp>
+#include <tautline/core/error.hpp>
+#include <tautline/core/interrupt.hpp>
+#include <tautline/la/session.hpp>
+
+#include "analysis/judge.hpp"
 
 namespace tautline::analysis {
 
@@ -32,6 +38,27 @@ NewtonSummary solve_point(PathProblem& problem, Workspace& workspace, const Newt
   return summary;
 }
 
+/// Starts a search at `lambda` that keeps to no path: from where the tangent leads, or from where only the
+/// prescribed unknowns have moved, whichever is nearer to balance.
+void approach(PathProblem& problem, Workspace& workspace, double lambda) {
+  problem.set_lambda(lambda);
+  const auto here = problem.keep();
+  const auto imbalance = [&] {
+    la::Vector x(problem.layout()), f(problem.layout());
+    problem.restart();
+    problem.residual(x, f);
+    return std::isfinite(f.norm()) ? relative_residual(problem.norms(f)) : HUGE_VAL;
+  };
+  const double before = imbalance();
+  if (problem.predict(workspace) && imbalance() < before) return;
+  problem.return_to(*here);
+  problem.set_lambda(lambda);
+}
+
+const char* name_of(LastResort method) {
+  return method == LastResort::descent ? "descent in energy" : "dynamic relaxation";
+}
+
 /// One run from lambda = 0 to 1.
 class Driver {
  public:
@@ -41,6 +68,7 @@ class Driver {
         workspace_(workspace),
         options_(options),
         callback_(callback),
+        last_resort_(start.last_resort),
         reached_(start.lambda),
         lost_(start.unknown) {}
 
@@ -51,52 +79,84 @@ class Driver {
     try {
       while (reached_ < 1 && advance()) {
       }
+      if (reached_ < 1 && last_resort_ != LastResort::none) leave_path();
     } catch (...) {
       problem_.roll_back();
       problem_.set_lambda(reached_);
       throw;
     }
-    if (reached_ < 1) return std::move(summary_);
-    summary_.reached = true;
+    summary_.reached = reached_ >= 1;
+    if (!summary_.reached) return std::move(summary_);
     summary_.inertia = inertia_;
-    summary_.reason = fmt::format("lambda = 1 reached in {} step{}", summary_.points.size(),
-                                  summary_.points.size() == 1 ? "" : "s");
+    if (inertia_.negative > 0) summary_.inertia.negative = count_firmly_negative(problem_, workspace_);
+    if (!summary_.last_resort)
+      summary_.reason = fmt::format("lambda = 1 reached in {} step{}", summary_.points.size(),
+                                    summary_.points.size() == 1 ? "" : "s");
     return std::move(summary_);
   }
 
  private:
-  /// One step or one attempt at it. @return false if the path ends here
-  bool advance() {
-    const double aim = next_point(reached_, step_, options_.increments);
-    problem_.set_lambda(aim);
-    const IterationCallback tell = [&](int iteration, double residual) {
+  IterationCallback teller(double aim) const {
+    return [this, aim](int iteration, double residual) {
       if (callback_.iteration) callback_.iteration(aim, iteration, residual);
     };
-    auto newton = solve_point(problem_, workspace_, options_, tell);
+  }
+
+  /// One step or one attempt at it. @return false if the path ends here
+  bool advance() {
+    if (la::true_on_any_rank(interrupt_requested())) throw Interrupted();
+    const double aim = next_point(reached_, step_, options_.increments);
+    problem_.set_lambda(aim);
+    auto newton = solve_point(problem_, workspace_, options_, teller(aim));
     summary_.newton_iterations += newton.newton_iterations();
     const bool lost = std::exchange(lost_, false);
     if (lost && (!newton.converged() || workspace_.solver.inertia().negative > 0))
-      newton = go_downhill(std::move(newton), tell);
-    if (!newton.converged()) return shorten(aim, newton);
-    if (newton.newton_iterations() <= easy_iterations) step_ = std::min(2 * step_, 1.0 / options_.increments);
+      newton = go_downhill(aim, std::move(newton));
+    if (!newton.converged()) return shorten(aim, newton.status, newton.reason);
+    const bool easy = newton.newton_iterations() <= easy_iterations;
+    if (!arrive(aim, std::move(newton), !lost))
+      return shorten(aim, NewtonStatus::diverged, "the step leapt to an unstable equilibrium off the path");
+    if (easy) step_ = std::min(2 * step_, 1.0 / options_.increments);
+    return true;
+  }
+
+  /// Takes the equilibrium in which the problem stands as the path's point at `aim`, whoever found it.
+  /// @param followed  whether a path led here, on which critical points may lie
+  /// @return false if it is not the path that leads here, which a shorter step would show
+  bool arrive(double aim, NewtonSummary newton, bool followed) {
     note_inertia(newton);
-    if (lost) negative_ = inertia_.negative;  // what led here is no path that could hold critical points
+    if (!followed) negative_ = inertia_.negative;
+    auto critical = look_between(aim);
+    if (leapt(critical, aim)) return false;
+    for (auto& point : critical) {
+      summary_.critical.push_back(std::move(point));
+      if (callback_.critical) callback_.critical(summary_.critical.back());
+    }
+    negative_ = inertia_.negative;
     problem_.commit();
-    look_between(aim);
     here_ = problem_.keep();
     reached_ = aim;
-    summary_.points.push_back({aim, std::move(newton), inertia_.negative});
+    summary_.points.push_back({aim, std::move(newton), inertia_.negative, {}});
     if (callback_.converged) callback_.converged(summary_.points.back());
     return true;
   }
 
+  /// A path becomes unstable at points where an eigenvalue vanishes. If none does, the step has come to
+  /// another equilibrium, e.g. of a part turned far in one step.
+  bool leapt(const std::vector<CriticalPoint>& critical, double aim) const {
+    constexpr double shortest = 1.0 / 64, vanished = 1e-3;
+    if (negative_ < 0 || inertia_.negative <= negative_ || aim - reached_ <= shortest) return false;
+    return std::none_of(critical.begin(), critical.end(),
+                        [](const CriticalPoint& point) { return std::abs(point.eigenvalue) < vanished; });
+  }
+
   /// From where no equilibrium is known and Newton's method found none, or an unstable one, which is taken if
   /// nothing better is found.
-  NewtonSummary go_downhill(NewtonSummary newton, const IterationCallback& tell) {
+  NewtonSummary go_downhill(double aim, NewtonSummary newton) {
     const auto there = problem_.keep();
     problem_.roll_back();
-    if (!problem_.predict(workspace_)) problem_.roll_back();
-    auto descent = descend(problem_, workspace_, options_, tell);
+    approach(problem_, workspace_, aim);
+    auto descent = descend(problem_, workspace_, options_, teller(aim));
     summary_.descent_steps += descent.steps;
     summary_.newton_iterations += descent.newton.newton_iterations();
     if (descent.newton.converged() || !newton.converged()) return std::move(descent.newton);
@@ -105,17 +165,58 @@ class Driver {
     return newton;
   }
 
-  bool shorten(double aim, const NewtonSummary& newton) {
+  /// From the last point of a path that gave up to an equilibrium at its end that the path does not lead to.
+  void leave_path() {
+    LastResortSummary told;
+    told.method = last_resort_;
+    told.gave_up = summary_.reason;
+    told.gave_up_at = reached_;
+    if (callback_.gave_up) callback_.gave_up(told);
+    approach(problem_, workspace_, 1);
+    auto newton = search(told);
+    told.newton_iterations = newton.newton_iterations();
+    summary_.newton_iterations += told.newton_iterations;
+    if (newton.converged()) {
+      summary_.reason = fmt::format("reached by {} in {} steps and {} Newton iterations",
+                                    name_of(last_resort_), told.steps, told.newton_iterations);
+      arrive(1, std::move(newton), false);
+    } else {
+      summary_.reason +=
+          fmt::format("; {} then came to {:.1e} of the reference force in {} steps, from where {}",
+                      name_of(last_resort_), told.residual, told.steps, newton.reason);
+      problem_.roll_back();
+      problem_.set_lambda(reached_);
+    }
+    summary_.last_resort = std::move(told);
+  }
+
+  NewtonSummary search(LastResortSummary& told) {
+    auto polish = options_;
+    polish.max_iterations = std::max(polish.max_iterations, NewtonOptions{}.max_iterations);
+    if (last_resort_ == LastResort::descent) {
+      auto descent = descend(problem_, workspace_, polish, teller(1));
+      told.steps = descent.steps;
+      told.residual = descent.residual;
+      return std::move(descent.newton);
+    }
+    const auto relaxed = relax(problem_, workspace_, {}, teller(1));
+    told.steps = relaxed.steps;
+    told.peaks = relaxed.peaks;
+    told.residual = relaxed.residual;
+    return solve_newton(problem_, workspace_, polish, teller(1));
+  }
+
+  bool shorten(double aim, NewtonStatus status, const std::string& why) {
     problem_.roll_back();
     ++summary_.failed_attempts;
-    summary_.singular = newton.status == NewtonStatus::singular;
+    summary_.singular = status == NewtonStatus::singular;
     step_ = std::min(step_, aim - reached_) / 2;
     if (step_ >= options_.min_step) return true;
     problem_.set_lambda(reached_);
     summary_.reason = fmt::format(
         "stopped at lambda = {:.4g}: the step {:.2e} fell below min_step = {:.2e}; the last attempt "
         "failed because {}",
-        reached_, step_, options_.min_step, newton.reason);
+        reached_, step_, options_.min_step, why);
     return false;
   }
 
@@ -125,8 +226,10 @@ class Driver {
     inertia_ = workspace_.solver.inertia();
   }
 
-  /// Where the number of negative pivots has changed since the last point, the points at which it did.
-  void look_between(double aim) {
+  /// Where the number of negative pivots has changed since the last point, the points at which it did. The
+  /// problem stays where it is.
+  std::vector<CriticalPoint> look_between(double aim) {
+    std::vector<CriticalPoint> critical;
     const auto there = problem_.keep();
     const int after = inertia_.negative;
     if (negative_ < 0 && after == 0)
@@ -134,15 +237,12 @@ class Driver {
     if (negative_ < 0) {
       problem_.return_to(*here_);
       negative_ = count_negative(problem_, workspace_);
-    }
-    if (negative_ == after) {
       problem_.return_to(*there);
-      problem_.commit();
-      return;
     }
+    if (negative_ == after) return critical;
     Workspace search{workspace_.tangent.shifted(0), la::DirectSolver()};  // what it does is not counted
     double low = reached_;
-    for (int round = 0; round < most_critical && negative_ != after; ++round) {
+    for (int round = 0, before = negative_; round < most_critical && before != after; ++round) {
       const auto go = [&](double t) -> std::optional<double> {
         const double lambda = low + t * (aim - low);
         problem_.return_to(*here_);
@@ -153,16 +253,14 @@ class Driver {
       problem_.return_to(*here_);
       if (low > reached_) go(0);
       double behind = 1;
-      auto found = find_critical_point(problem_, search, {go, negative_, after, low}, behind);
+      auto found = find_critical_point(problem_, search, {go, before, after, low}, behind);
       if (!found) break;
-      negative_ = found->negative_after;
+      before = found->negative_after;
       low += behind * (aim - low);
-      summary_.critical.push_back(std::move(*found));
-      if (callback_.critical) callback_.critical(summary_.critical.back());
+      critical.push_back(std::move(*found));
     }
-    negative_ = after;
     problem_.return_to(*there);
-    problem_.commit();
+    return critical;
   }
 
   static constexpr int most_critical = 8;
@@ -173,6 +271,7 @@ class Driver {
   PathSummary summary_;
   std::shared_ptr<const PathProblem::Kept> here_;
   la::Inertia inertia_;
+  LastResort last_resort_;
   double reached_, step_ = 1.0 / options_.increments;
   bool lost_;          // no equilibrium is known
   int negative_ = -1;  // at the last point; not known at the start

@@ -54,6 +54,16 @@ int count_negative(PathProblem& problem, Workspace& workspace) {
   return workspace.solver.inertia().negative;
 }
 
+int count_firmly_negative(PathProblem& problem, Workspace& workspace) {
+  constexpr double rounding = 1e-13;  // of the sums |K_ij| over a row: some hundred units in the last place
+  problem.tangent(workspace.tangent);
+  la::Vector scale(problem.layout());
+  scale.write(workspace.tangent.absolute_row_sums_of_blocks());
+  workspace.tangent.add_diagonal(rounding, scale);
+  workspace.solver.factor(workspace.tangent);
+  return workspace.solver.inertia().negative;
+}
+
 double load_share(const la::Vector& mode, const la::Vector& load_rate, const la::Vector& weights) {
   // The dual norm of the load: its size where displacements are measured by the weights.
   std::vector<double> load(static_cast<std::size_t>(load_rate.local_size())), weight(load.size());

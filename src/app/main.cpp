@@ -97,11 +97,11 @@ int guarded(const std::function<int()>& action) {
   }
 }
 
-/// Runs with the libraries started and Ctrl-C watched. A failure that only one rank may have met ends all of
-/// them.
+/// Runs with the libraries started; until a run begins, which watches Ctrl-C, it ends the process. A failure
+/// that only one rank may have met ends all of them.
 int in_session(const std::function<int()>& action) {
   const la::Session session;
-  watch_for_interrupt();
+  end_at_interrupt();
   const int code = guarded(action);
   if (code >= static_cast<int>(ExitCode::library_failed) && code != static_cast<int>(ExitCode::interrupted) &&
       la::size() > 1)

@@ -48,11 +48,7 @@ class Expansion {
   /// Values of the rows for an increment of all unknowns.
   template <class Vector>
   Vector rows_of(const std::vector<double>& unknowns) const {
-    const auto list = blocks();
-    VecX x(3 * static_cast<Eigen::Index>(list.size()));
-    for (std::size_t i = 0; i < list.size(); ++i)
-      x.segment<3>(3 * static_cast<Eigen::Index>(i)) =
-          Eigen::Map<const Vec3>(&unknowns[static_cast<std::size_t>(3 * list[i])]);
+    const VecX x = of_blocks(unknowns);
     if (plain()) return x;
     return matrix_ * x;
   }
@@ -60,19 +56,33 @@ class Expansion {
   /// Adds forces on the rows to the unknowns.
   template <class Force>
   void add(const Force& values, std::vector<double>& to) const {
-    if (plain()) {
-      for (int b = 0; b < n_rows_; ++b)
-        for (int c = 0; c < 3; ++c)
-          to[static_cast<std::size_t>(3 * rows_[static_cast<std::size_t>(b)] + c)] += values[3 * b + c];
-      return;
-    }
-    const VecX x = matrix_.transpose() * values;
-    for (std::size_t i = 0; i < blocks_.size(); ++i)
-      for (int c = 0; c < 3; ++c)
-        to[static_cast<std::size_t>(3 * blocks_[i] + c)] += x[3 * static_cast<Eigen::Index>(i) + c];
+    if (plain())
+      add_to_blocks(values, to);
+    else
+      add_to_blocks((matrix_.transpose() * values).eval(), to);
+  }
+
+  /// Adds K x increment of all unknowns, K given in the unknowns of `blocks()`.
+  void add_product(const MatX& k, const std::vector<double>& increment, std::vector<double>& to) const {
+    add_to_blocks((k * of_blocks(increment)).eval(), to);
   }
 
  private:
+  VecX of_blocks(const std::vector<double>& unknowns) const {
+    const auto list = blocks();
+    VecX x(3 * static_cast<Eigen::Index>(list.size()));
+    for (std::size_t i = 0; i < list.size(); ++i)
+      x.segment<3>(3 * static_cast<Eigen::Index>(i)) =
+          Eigen::Map<const Vec3>(&unknowns[static_cast<std::size_t>(3 * list[i])]);
+    return x;
+  }
+  template <class Values>
+  void add_to_blocks(const Values& values, std::vector<double>& to) const {
+    const auto list = blocks();
+    for (std::size_t i = 0; i < list.size(); ++i)
+      for (int c = 0; c < 3; ++c)
+        to[static_cast<std::size_t>(3 * list[i] + c)] += values[3 * static_cast<Eigen::Index>(i) + c];
+  }
   void collect();
 
   std::array<int, 8> rows_{};

@@ -80,6 +80,7 @@ System::System(model::Model model)
 void System::set_state(const model::State& state) {
   state_ = committed_ = state;
   drives_.clear();
+  prescribed_.clear();
   kinematics_.linearise(state_);
   restart();
 }
@@ -109,6 +110,7 @@ OutOfBalance System::begin_stage(const Boundary& boundary) {
   audit_loads(boundary, end_.strain);
   check_motions(boundary, map_, kinematics_);
   find_drives(boundary);
+  note_prescribed(boundary);
   driven_to_ = committed_drive_ = 0;
   apply(0);
   start_residual_ = out_of_balance();
@@ -212,12 +214,23 @@ std::vector<double> System::out_of_balance() const {
   return gathered(force);
 }
 
-void System::residual(const la::Vector& x, la::Vector& f) {
-  const Stopwatch watch(assembly_seconds_);
+std::vector<double> System::increments_to(const la::Vector& x) const {
   std::vector<double> all;
   x.gather(all);
   for (std::size_t i = 0; i < all.size(); ++i) all[i] -= origin_[i];
-  const auto state = kinematics_.moved(state_, all);
+  for (const auto& drive : drives_)
+    for (int c = 0; c < 3; ++c)
+      if (const auto unknown = static_cast<std::size_t>(3 * drive.block + c); held()[unknown])
+        all[unknown] = (lambda_ - driven_to_) * drive.way[c];
+  return all;
+}
+
+void System::residual(const la::Vector& x, la::Vector& f) {
+  const Stopwatch watch(assembly_seconds_);
+  residual_at(kinematics_.moved(state_, increments_to(x)), f);
+}
+
+void System::residual_at(const model::State& state, la::Vector& f) {
   kinematics_.linearise(state);
   std::vector<double> force(origin_.size(), 0.0);
   magnitude_.assign(origin_.size(), 0.0);
@@ -228,13 +241,10 @@ void System::residual(const la::Vector& x, la::Vector& f) {
 }
 
 void System::accept(const la::Vector& x) {
-  std::vector<double> all, increments;
-  x.gather(all);
-  increments = all;
-  for (std::size_t i = 0; i < all.size(); ++i) increments[i] -= origin_[i];
-  state_ = kinematics_.moved(state_, increments);
+  state_ = kinematics_.moved(state_, increments_to(x));
+  driven_to_ = lambda_;
   kinematics_.linearise(state_);
-  origin_ = std::move(all);
+  x.gather(origin_);
 }
 
 void System::restart() {
@@ -253,25 +263,16 @@ void System::roll_back() {
   restart();
 }
 
-std::vector<double> System::stiffness_times(const std::vector<double>& increment) const {
-  std::vector<double> product(origin_.size(), 0.0);
-  for_each_own([&](const auto& element) {
-    const Expansion expansion(kinematics_, map_, element.nodes, uses_rotations(model_, element));
-    const auto c = answer(state_, element, Want::tangent);
-    expansion.add((c.tangent * expansion.template rows_of<VecX>(increment)).eval(), product);
-  });
-  return product;
-}
-
+/// Newton's step with the tangent of the point where supports still are: from there they go their whole way
+/// in one straight line, and what hangs on them goes along.
 bool System::predict(analysis::Workspace& workspace) {
   if (drives_.empty() || lambda_ == driven_to_) return true;
-  std::vector<double> way(origin_.size(), 0.0);
-  for (const auto& drive : drives_)
-    for (int c = 0; c < 3; ++c)
-      way[static_cast<std::size_t>(3 * drive.block + c)] = (lambda_ - driven_to_) * drive.way[c];
+  std::vector<double> way = drive_rates();
+  for (double& part : way) part *= lambda_ - driven_to_;
   restart();
   la::Vector x(map_.layout), f(map_.layout);
-  residual(x, f);
+  residual_at(state_, f);
+  kinematics_.linearise(state_);
   const auto resistance = stiffness_times(way);
   std::vector<double> right(static_cast<std::size_t>(3 * map_.layout.local));
   f.read(right);
@@ -283,13 +284,8 @@ bool System::predict(analysis::Workspace& workspace) {
   tangent(workspace.tangent);
   if (!workspace.solver.factor(workspace.tangent)) return false;
   workspace.solver.solve(f, x);
-  x.read(right);
-  for (std::size_t i = 0; i < right.size(); ++i)
-    right[i] += way[i + static_cast<std::size_t>(3 * map_.layout.first)];
-  x.write(right);
   accept(x);
   restart();
-  driven_to_ = lambda_;
   return true;
 }
 

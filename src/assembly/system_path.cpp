@@ -26,10 +26,10 @@ void System::return_to(const Kept& kept) {
 
 /// The loads are linear in lambda, what temperatures and unstressed lengths do nearly so: a wide difference
 /// keeps the digits.
-void System::load_rate(la::Vector& q) {
+std::vector<double> System::force_rate() {
   constexpr double h = 1e-2;
   const double lambda = lambda_;
-  const auto residual_at = [&](double at) {
+  const auto residual_at_lambda = [&](double at) {
     apply(at);
     std::vector<double> force(origin_.size(), 0.0), magnitude(origin_.size(), 0.0);
     add_forces(state_, kinematics_, force, magnitude);
@@ -37,19 +37,32 @@ void System::load_rate(la::Vector& q) {
     return force;
   };
   kinematics_.linearise(state_);
-  const auto ahead = residual_at(lambda + h), back = residual_at(lambda - h);
+  auto rate = residual_at_lambda(lambda - h);
+  const auto ahead = residual_at_lambda(lambda + h);
   apply(lambda);
-  std::vector<double> rate(origin_.size(), 0.0), way(origin_.size(), 0.0);
-  for (std::size_t i = 0; i < rate.size(); ++i) rate[i] = -(ahead[i] - back[i]) / (2 * h);
+  for (std::size_t i = 0; i < rate.size(); ++i) rate[i] = (rate[i] - ahead[i]) / (2 * h);
+  return rate;
+}
+
+void System::load_rate(la::Vector& q) {
+  auto rate = force_rate();
   if (!drives_.empty()) {
-    for (const auto& drive : drives_)
-      for (int c = 0; c < 3; ++c) way[static_cast<std::size_t>(3 * drive.block + c)] = drive.way[c];
-    const auto pull = stiffness_times(way);
+    const auto pull = stiffness_times(drive_rates());
     for (std::size_t i = 0; i < rate.size(); ++i) rate[i] -= pull[i];
   }
   for (std::size_t i = 0; i < rate.size(); ++i)
     if (held()[i]) rate[i] = 0;
   q.write(own_part(rate));
+}
+
+bool System::changes_at_rest() {
+  constexpr double nothing = 1e-12;  // of the forces that are there
+  if (!drives_.empty()) return true;
+  la::Vector zero(map_.layout), rate(map_.layout);
+  residual(zero, rate);  // for the forces that are there
+  rate.write(own_part(force_rate()));
+  const auto norms = this->norms(rate);
+  return norms.force > nothing * norms.reference_force || norms.moment > nothing * norms.reference_moment;
 }
 
 void System::weights(double rotation_weight, la::Vector& d) const {
@@ -77,13 +90,32 @@ la::Vector System::mean_motion(const std::vector<int>& nodes, const Vec3& direct
   return c;
 }
 
-void System::add_drives(la::Vector& x) const {
-  std::vector<double> own(static_cast<std::size_t>(x.local_size()));
-  x.read(own);
+std::vector<double> System::drive_rates() const {
+  std::vector<double> rates(origin_.size(), 0.0);
   for (const auto& drive : drives_)
-    for (int c = 0; map_.owns(drive.block) && c < 3; ++c)
-      own[static_cast<std::size_t>(3 * (drive.block - map_.layout.first) + c)] += drive.way[c];
-  x.write(own);
+    for (int c = 0; c < 3; ++c) rates[static_cast<std::size_t>(3 * drive.block + c)] = drive.way[c];
+  return rates;
+}
+
+void System::drive_rate(la::Vector& w) const {
+  w.write(own_part(drive_rates()));
+}
+
+void System::add_drives(la::Vector& x) const {
+  la::Vector w(map_.layout);
+  drive_rate(w);
+  x.add(1, w);
+}
+
+double System::drive_size(double rotation_weight) const {
+  std::vector<bool> turns(static_cast<std::size_t>(map_.layout.total), false);
+  for (const int block : map_.rotation_block)
+    if (block >= 0) turns[static_cast<std::size_t>(block)] = true;
+  double sum = 0;
+  for (const auto& drive : drives_)
+    sum += drive.way.squaredNorm() *
+           (turns[static_cast<std::size_t>(drive.block)] ? rotation_weight : 1 / (size_ * size_));
+  return sum;
 }
 
 Rest System::rest() const {

@@ -187,28 +187,17 @@ bool System::load_bends(int node) const {
   return (follows && !now_.force[node].isZero(0)) || (by_moment && !now_.moment[node].isZero(0));
 }
 
-template <class ContributionOf>
-void System::assemble_tangent(la::SymmetricMatrix& k, const ContributionOf& contribution_of) {
-  const Stopwatch watch(assembly_seconds_);
-  kinematics_.linearise(state_);
-  k.set_zero();
-  const auto add = [&](const auto& nodes, bool rotations, const auto& force, auto& values) {
-    const Expansion expansion(kinematics_, map_, nodes, rotations);
-    if (expansion.plain()) return add_free(expansion.blocks(), values, held(), k);
-    const MatX& b = expansion.matrix();
-    MatX transformed = b.transpose() * values * b;
-    LinkTerms(kinematics_, map_, model_, expansion, transformed).add(nodes, rotations, force);
-    add_free(expansion.blocks(), transformed, held(), k);
-  };
+template <class ContributionOf, class Visit>
+void System::for_each_stiffness(const ContributionOf& contribution_of, const Visit& visit) const {
   for_each_own([&](const auto& element) {
     auto c = contribution_of(element);
-    add(element.nodes, uses_rotations(model_, element), c.force, c.tangent);
+    visit(element.nodes, uses_rotations(model_, element), c.force, c.tangent);
   });
   for_each_pressed([&](const model::FacetNodes& nodes, double pressure) {
     auto c = pressure_contribution(model_, state_, nodes, pressure, Want::tangent);
     c.force = -c.force;
     c.tangent = -c.tangent;
-    add(nodes, false, c.force, c.tangent);
+    visit(nodes, false, c.force, c.tangent);
   });
   for (int node = 0; node < static_cast<int>(model_.nodes.size()); ++node) {
     if (!load_bends(node)) continue;
@@ -216,8 +205,24 @@ void System::assemble_tangent(la::SymmetricMatrix& k, const ContributionOf& cont
     Vec<6> load;
     load << -now_.force[node], -now_.moment[node];
     ElementMatrix none = ElementMatrix::Zero(turns ? 6 : 3, turns ? 6 : 3);
-    add(std::array<int, 1>{node}, turns, load, none);
+    visit(std::array<int, 1>{node}, turns, load, none);
   }
+}
+
+template <class ContributionOf>
+void System::assemble_tangent(la::SymmetricMatrix& k, const ContributionOf& contribution_of) {
+  const Stopwatch watch(assembly_seconds_);
+  kinematics_.linearise(state_);
+  k.set_zero();
+  for_each_stiffness(contribution_of, [&](const auto& nodes, bool rotations, const auto& force,
+                                          auto& values) {
+    const Expansion expansion(kinematics_, map_, nodes, rotations);
+    if (expansion.plain()) return add_free(expansion.blocks(), values, held(), k);
+    const MatX& b = expansion.matrix();
+    MatX transformed = b.transpose() * values * b;
+    LinkTerms(kinematics_, map_, model_, expansion, transformed).add(nodes, rotations, force);
+    add_free(expansion.blocks(), transformed, held(), k);
+  });
   for (int block = map_.layout.first; block < map_.layout.first + map_.layout.local; ++block) {
     Mat3 identity = Mat3::Zero();
     for (int c = 0; c < 3; ++c)
@@ -229,6 +234,22 @@ void System::assemble_tangent(la::SymmetricMatrix& k, const ContributionOf& cont
 
 void System::tangent(la::SymmetricMatrix& k) {
   assemble_tangent(k, [&](const auto& element) { return answer(state_, element, Want::tangent); });
+}
+
+std::vector<double> System::stiffness_times(const std::vector<double>& increment) {
+  kinematics_.linearise(state_);
+  std::vector<double> product(origin_.size(), 0.0);
+  const auto here = [&](const auto& element) { return answer(state_, element, Want::tangent); };
+  for_each_stiffness(here, [&](const auto& nodes, bool rotations, const auto& force, const auto& values) {
+    const Expansion expansion(kinematics_, map_, nodes, rotations);
+    if (expansion.plain())
+      return expansion.add((values * expansion.template rows_of<VecX>(increment)).eval(), product);
+    const MatX& b = expansion.matrix();
+    MatX transformed = b.transpose() * values * b;
+    LinkTerms(kinematics_, map_, model_, expansion, transformed).add(nodes, rotations, force);
+    expansion.add_product(transformed, increment, product);
+  });
+  return product;
 }
 
 void System::hold_branches(std::vector<Branch> branches) {

@@ -61,7 +61,11 @@ class StepCheck {
         check_form_finding(*options, *node);
       if (std::holds_alternative<TuningStepOptions>(step.options)) check_tuning(*node);
       if (std::holds_alternative<InverseOptions>(step.options)) check_inverse(*node);
-      if (std::holds_alternative<EquilibriumOptions>(step.options)) has_equilibrium_ = true;
+      if (const auto* options = std::get_if<CollapseOptions>(&step.options)) check_collapse(*options, *node);
+      if (const auto* options = std::get_if<EquilibriumOptions>(&step.options)) {
+        has_equilibrium_ = true;
+        acting_ = options->loads ? *options->loads : names_.known("load");
+      }
       if (std::holds_alternative<EquilibriumOptions>(step.options))
         check_unique(node->find("stages"), "stage", {"steps", std::to_string(i), "stages"}, reader_);
     }
@@ -183,6 +187,29 @@ class StepCheck {
                        "it starts from an equilibrium and keeps the loads that act there");
   }
 
+  /// Safety factors compare nodal forces with compressions: there must be nothing else that grows.
+  void check_collapse(const CollapseOptions& options, const Node& node) {
+    if (options.working_forces.empty()) return;
+    const auto has = [](const std::vector<std::string>& list, const std::string& name) {
+      return std::find(list.begin(), list.end(), name) != list.end();
+    };
+    for (const auto& load : deck_.loads) {
+      const bool grows = options.loads ? has(*options.loads, load.name)
+                                       : !has(acting_, load.name) && !has(options.disturbance, load.name);
+      const bool other = load.displacement || load.rotation || load.line_force || load.line_moment ||
+                         load.surface_force || load.pressure || load.temperature_change ||
+                         !load.temperature_field.empty() || load.acceleration;
+      if (grows && (other || load.force.isZero(0)))
+        reader_.complain(
+            node.find("working_forces")->label,
+            fmt::format("working_forces are compared with nodal forces, and load \"{}\" that grows "
+                        "is none",
+                        load.name),
+            context_, "expected loads that grow by `force` alone",
+            "leave working_forces out: critical_lambda is the factor on these loads");
+    }
+  }
+
   void check_tuning(const Node& node) {
     if (root_.find("reflector") == nullptr)
       reader_.complain(node.label, "a tuning step needs a reflector", context_, {},
@@ -194,8 +221,9 @@ class StepCheck {
   const Node& root_;
   Reader& reader_;
   std::string context_;
-  bool has_rods_ = false;         ///< a rod_shaping step stands before
-  bool has_equilibrium_ = false;  ///< an equilibrium step stands before
+  bool has_rods_ = false;            ///< a rod_shaping step stands before
+  bool has_equilibrium_ = false;     ///< an equilibrium step stands before
+  std::vector<std::string> acting_;  ///< loads of the equilibrium before
 };
 
 }  // namespace

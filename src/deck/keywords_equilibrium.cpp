@@ -148,8 +148,9 @@ const BlockSet& imperfection_blocks() {
     b.key("amplitude", &ImperfectionOptions::amplitude)
         .in("m")
         .says(
-            "Displacement of the node that is displaced most. The mode's largest component is positive; a "
-            "negative amplitude is the other side.");
+            "Displacement of the node that is displaced most. Both sides are tried, the one where the mode's "
+            "largest component is positive first, with a negative amplitude the other one; the smaller "
+            "critical load counts.");
     return BlockSet{"steps.collapse.imperfection", "A structure that is not quite straight.", {b.take()}, {}};
   }();
   return set;
@@ -230,6 +231,11 @@ Block equilibrium_block() {
           "steps downhill in the potential energy to a stable equilibrium, also beyond a limit; "
           "dynamic_relaxation: the same with inertia, slower; automatic: descent from a start that is not in "
           "balance by itself, as long as no equilibrium is known.");
+  b.key("allow_unstable", &Options::allow_unstable)
+      .says(
+          "An unstable equilibrium at the end counts as done. Without it the run ends with it (exit code 4), "
+          "except "
+          "on a path with control: arc_length, which may be unstable by nature.");
   b.block("scatter", &Options::scatter, scatter_blocks())
       .says("Random displacements and tensions at the start of the step.");
   b.check(check_equilibrium);
@@ -265,7 +271,10 @@ Block collapse_block() {
       .says("Loads that grow; what acts already stays as it is.");
   b.key("disturbance", &Options::disturbance)
       .refers("load")
-      .says("Loads that act in full while the others grow step by step, e.g. a lateral force of 1 N.");
+      .says(
+          "Loads that act in full while the others grow step by step, e.g. a lateral force of 1 N; as given "
+          "and "
+          "reversed, and the smaller critical load counts.");
   b.block("imperfection", &Options::imperfection, imperfection_blocks())
       .says("Shape of the structure that is followed step by step, in place of or beside a disturbance.");
   b.key("monitor", &Options::monitor)
@@ -276,8 +285,9 @@ Block collapse_block() {
   b.key("growth", &Options::growth)
       .above(1)
       .says(
-          "A step in which the monitored displacement grows more than so many times is past the critical "
-          "load.");
+          "A step in which the monitored displacement grows more than so many times, and by more than a "
+          "quarter "
+          "beyond what goes on in proportion to the load, is past the critical load.");
   b.key("linear_factor", &Options::linear_factor)
       .above(0)
       .by_default("the first positive factor of linear buckling")
@@ -286,7 +296,10 @@ Block collapse_block() {
   b.key("working_forces", &Options::working_forces)
       .in("N")
       .above(0)
-      .says("Compressions of members in service; the critical load over each is a safety factor.");
+      .says(
+          "Compressions of members in service; the critical load over each is a safety factor. The loads "
+          "that grow "
+          "must be nodal forces.");
   add_arc_keys(
       b, [](Options & o) -> auto& { return o.arc_length; });
   return b.take();

@@ -84,13 +84,13 @@ assembly::Rest rest_of(const Json& json) {
 
 Json to_json(const std::optional<analysis::ArcPlace>& arc) {
   if (!arc) return nullptr;
-  return {arc->length, arc->first_length, arc->lambda_weight, arc->direction,
-          arc->points, arc->critical,     arc->bifurcations};
+  return {arc->length,    arc->first_length, arc->lambda_weight, arc->rotation_weight,
+          arc->direction, arc->points,       arc->critical,      arc->bifurcations};
 }
 
 std::optional<analysis::ArcPlace> arc_of(const Json& json) {
   if (json.is_null()) return std::nullopt;
-  return analysis::ArcPlace{json[0], json[1], json[2], json[3], json[4], json[5], json[6]};
+  return analysis::ArcPlace{json[0], json[1], json[2], json[3], json[4], json[5], json[6], json[7]};
 }
 
 Json to_json(const StagePoint& point) {

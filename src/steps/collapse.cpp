@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
-#include <tautline/core/error.hpp>
+#include <tautline/analysis/stability.hpp>
 
 #include "steps/context.hpp"
 #include "steps/imperfection.hpp"
@@ -16,25 +16,27 @@ namespace tautline::steps {
 
 namespace {
 
-/// Length of the mean displacement of what is watched from its place in the perfect structure: that of an
-/// imperfection, if any, and the motion [m].
-double watched_motion(const assembly::System& system, const std::vector<int>& nodes,
-                      const Points& imperfection) {
+/// Mean of a nodal field over some nodes.
+Vec3 mean_of(const Points& field, const std::vector<int>& nodes) {
   Vec3 mean = Vec3::Zero();
-  for (const int node : nodes) {
-    const auto i = static_cast<std::size_t>(node);
-    mean += system.state().displacement[i] / static_cast<double>(nodes.size());
-    if (!imperfection.empty()) mean += imperfection[i] / static_cast<double>(nodes.size());
-  }
-  return mean.norm();
+  for (const int node : nodes) mean += field[static_cast<std::size_t>(node)];
+  return mean / static_cast<double>(nodes.size());
 }
 
-/// Names put together, each once.
-std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
-  for (const auto& name : b)
-    if (std::find(a.begin(), a.end(), name) == a.end()) a.push_back(name);
-  return a;
-}
+/// What the rule is asked: loads that grow, their linear value, and where the undisturbed structure stands
+/// and becomes critical.
+struct Question {
+  std::vector<std::string> loads;
+  double linear = 0;
+  assembly::Rest rest;          ///< of the undisturbed structure at the start of the step
+  std::optional<double> first;  ///< load factor of its first critical point
+  Points shape;                 ///< of the imperfection; may be empty
+};
+
+/// Signs of an imperfection and of the disturbance.
+struct Signs {
+  int imperfection = 1, disturbance = 1;
+};
 
 /// The published rule: equal load steps on the disturbed structure until one of them makes the motion grow
 /// too much.
@@ -44,61 +46,165 @@ struct RuleResult {
   std::string criterion;
 };
 
-RuleResult follow_rule(Context& context, const CollapseOptions& options,
-                       const std::vector<std::string>& loads, double linear,
-                       const Points& imperfection = {}) {
-  auto& system = context.system();
-  RuleResult result;
-  const auto nodes = system.model().nodes_of(options.monitor);
-  const auto rest = system.rest();
-  const auto acting = context.acting_loads;
-  context.acting_loads = joined(acting, options.disturbance);
-  std::string failure = come_to_rest(context);
-  const double start = watched_motion(system, nodes, imperfection);
-  if (failure.empty()) result.path.push_back({{"lambda", 0.0}, {"monitor", start}});
-  double before = start;
-  for (int k = 1; failure.empty() && k * options.step <= options.last * (1 + 1e-12); ++k) {
-    const double lambda = k * options.step * linear;
-    system.begin_stage(boundary_with(context, loads, lambda));
-    const auto path = follow(context, fmt::format("load factor {:.4g}", lambda));
-    if (!path.reached) {
-      result.criterion = fmt::format("no equilibrium at load factor {:.5g}: {}", lambda, path.reason);
-      break;
+/// One run of the rule, on the system as it is (with its imperfection, if any).
+class Rule {
+ public:
+  Rule(Context& context, const CollapseOptions& options, const Question& question, const Signs& signs)
+      : context_(context),
+        options_(options),
+        question_(question),
+        signs_(signs),
+        nodes_(context.system().model().nodes_of(options.monitor)) {}
+
+  RuleResult run() {
+    follow_stage(0, "disturbed");
+    for (int k = 1; result_.criterion.empty() && k * options_.step <= options_.last * (1 + 1e-12); ++k)
+      make_step(k);
+    if (result_.criterion.empty())
+      result_.criterion = fmt::format("no step up to {:g} of the linear value grows {:g} times",
+                                      options_.last, options_.growth);
+    return std::move(result_);
+  }
+
+ private:
+  /// What is watched, from its place in the undisturbed structure at the start of the step: imperfection and
+  /// motion [m].
+  Vec3 motion() const {
+    Vec3 mean = mean_of(context_.system().state().displacement, nodes_) -
+                mean_of(question_.rest.state.displacement, nodes_);
+    if (!question_.shape.empty()) mean += signs_.imperfection * mean_of(question_.shape, nodes_);
+    return mean;
+  }
+
+  /// Notes the point, or why there is none or it tells nothing.
+  void follow_stage(double lambda, const std::string& what) {
+    const auto has = [](const std::vector<std::string>& names, const std::string& name) {
+      return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    auto boundary =
+        lambda > 0 ? boundary_with(context_, question_.loads, lambda) : context_.boundary({}, true);
+    for (const auto& load : context_.system().model().loads)
+      if (has(options_.disturbance, load.name) && !has(context_.acting_loads, load.name))
+        boundary.loads.push_back(model::scaled(load, signs_.disturbance));
+    context_.system().begin_stage(boundary);
+    const auto path = follow(context_, what);
+    if (!path.reached)
+      result_.criterion = fmt::format("no equilibrium at load factor {:.5g}: {}", lambda, path.reason);
+    else if (path.inertia.negative > 0)
+      result_.criterion =
+          fmt::format("the disturbed structure is unstable at load factor {:.5g}: {} negative pivot{}",
+                      lambda, path.inertia.negative, path.inertia.negative == 1 ? "" : "s");
+    else
+      note(lambda, motion());
+  }
+
+  void note(double lambda, const Vec3& motion) {
+    motions_.push_back(motion);
+    result_.path.push_back({{"lambda", lambda}, {"monitor", motion.norm()}});
+  }
+
+  void make_step(int k) {
+    const double lambda = k * options_.step * question_.linear;
+    if (question_.first && lambda > *question_.first) {
+      result_.criterion = fmt::format(
+          "the next step of {:g} of the linear value passes the first critical point of the undisturbed "
+          "structure at load factor {:.5g}",
+          options_.step, *question_.first);
+      return;
     }
-    const double now = watched_motion(system, nodes, imperfection);
-    result.path.push_back({{"lambda", lambda}, {"monitor", now}});
-    // A motion that grows as the load does is no sign of anything.
-    if (k > 1 && now > before * std::max(options.growth, k / (k - 1.0))) {
-      result.criterion = fmt::format(
+    const double largest = largest_so_far(), expected = proportional(k).norm();
+    follow_stage(lambda, fmt::format("load factor {:.4g}", lambda));
+    if (!result_.criterion.empty()) return;
+    const double now = motions_.back().norm();
+    if (k > 1 && now > options_.growth * largest && now > proportion * expected) {
+      result_.criterion = fmt::format(
           "the monitored displacement grows {:.4g} times, more than {:g}, in the next step of {:g} of "
           "the linear value",
-          now / before, options.growth, options.step);
-      break;
+          now / largest, options_.growth, options_.step);
+      return;
     }
-    result.critical = lambda;
-    before = now;
+    result_.critical = lambda;
   }
-  if (!failure.empty()) result.criterion = failure;
-  if (result.criterion.empty())
-    result.criterion =
-        fmt::format("no step up to {:g} of the linear value grows {:g} times", options.last, options.growth);
-  context.acting_loads = acting;
-  system.restore(rest);
+
+  /// An imperfection may point against the motion under the load, which then passes through zero.
+  double largest_so_far() const {
+    double largest = 0;
+    for (const Vec3& motion : motions_) largest = std::max(largest, motion.norm());
+    return largest;
+  }
+
+  /// Where a motion that has grown as the load did until step k - 1 comes in step k: growing so is no sign of
+  /// anything, in the first steps least of all.
+  Vec3 proportional(int k) const {
+    return motions_.back() + (motions_.back() - motions_.front()) / std::max(1, k - 1);
+  }
+
+  static constexpr double proportion = 1.25;  // a motion is more than proportional from here on
+  Context& context_;
+  const CollapseOptions& options_;
+  const Question& question_;
+  Signs signs_;
+  std::vector<int> nodes_;
+  Points motions_;  // at the points of the path
+  RuleResult result_;
+};
+
+/// The rule on the structure with its nodes displaced by the imperfection before it is loaded; afterwards the
+/// perfect one is back where it was.
+RuleResult follow_rule(Context& context, const CollapseOptions& options, const Question& question,
+                       const Signs& signs) {
+  if (question.shape.empty()) {
+    auto result = Rule(context, options, question, signs).run();
+    context.system().restore(question.rest);
+    return result;
+  }
+  const model::Model perfect = context.system().model();
+  Points shape = question.shape;
+  for (Vec3& v : shape) v *= signs.imperfection;
+  context.set_system(made_imperfect(perfect, shape));
+  context.system().restore(question.rest);
+  auto result = Rule(context, options, question, signs).run();
+  context.set_system(perfect);
+  context.system().restore(question.rest);
   return result;
 }
 
-/// The published rule on the structure with its nodes displaced by `shape` before it is loaded; afterwards
-/// the perfect one is back where it was.
-RuleResult follow_imperfect(Context& context, const CollapseOptions& options,
-                            const std::vector<std::string>& loads, double linear, const Points& shape) {
-  const model::Model perfect = context.system().model();
-  const auto rest = context.system().rest();
-  context.set_system(made_imperfect(perfect, shape));
-  context.system().restore(rest);
-  auto result = follow_rule(context, options, loads, linear, shape);
-  context.set_system(perfect);
-  context.system().restore(rest);
-  return result;
+/// The smallest result over both signs of what is wrong with the structure: which way it leans is chance, and
+/// what acts already may lean against it.
+RuleResult follow_both_signs(Context& context, const CollapseOptions& options, const Question& question,
+                             Json& entry) {
+  std::vector<Signs> all;
+  for (const int imperfection : {1, -1})
+    for (const int disturbance : {1, -1})
+      if ((imperfection == 1 || !question.shape.empty()) &&
+          (disturbance == 1 || !options.disturbance.empty()))
+        all.push_back({imperfection, disturbance});
+  std::optional<RuleResult> least;
+  Json tried = Json::array();
+  for (const auto& signs : all) {
+    auto result = follow_rule(context, options, question, signs);
+    tried.push_back({{"imperfection", signs.imperfection},
+                     {"disturbance", signs.disturbance},
+                     {"critical_lambda", result.critical},
+                     {"criterion", result.criterion}});
+    if (!least || result.critical < least->critical) least = std::move(result);
+  }
+  if (all.size() > 1) entry["signs"] = std::move(tried);
+  return std::move(*least);
+}
+
+/// What is to be said where the rule ends far below the first critical point beside it.
+std::string explanation(const RuleResult& rule, const CollapseOptions& options, const Question& question) {
+  const double far = std::min(0.8, 1 - 4 * options.step);  // where the rule ends of itself
+  if (!question.first || rule.critical >= far * *question.first) return "";
+  const bool disturbed = !question.shape.empty() || !options.disturbance.empty();
+  return fmt::format(
+      "; the undisturbed structure becomes critical at load factor {:.5g} only, {:.3g} times as much: {}",
+      *question.first, *question.first / std::max(rule.critical, 1e-300),
+      disturbed
+          ? "what is watched is moved that much by the imperfection or the disturbance, which are large, "
+            "or in another way than the critical mode's"
+          : "what is watched moves in another way than the critical mode's");
 }
 
 /// The path of the undisturbed structure to its first critical point.
@@ -107,6 +213,8 @@ Json follow_undisturbed(Context& context, const CollapseOptions& options,
   auto& system = context.system();
   const auto rest = system.rest();
   auto arc = options.arc_length;
+  arc.largest_step =  // passes no two limits
+      std::min(arc.largest_step, std::max(1.0, 2 * options.step / arc.first_step));
   arc.stop_at_critical = 1;
   arc.load_factor = 2 * options.last;
   system.begin_stage(boundary_with(context, loads, linear));
@@ -145,6 +253,9 @@ Json run_step(Context& context, const CollapseOptions& options) {
     return entry;
   };
   if (const auto reason = come_to_rest(context); !reason.empty()) return fail(reason);
+  if (const int negative = analysis::count_negative(context.system(), context.workspace()); negative > 0)
+    return fail(fmt::format("the present state is unstable already: {} negative pivot{}", negative,
+                            negative == 1 ? "" : "s"));
   const auto& [mode, amplitude] = options.imperfection;
   double linear = options.linear_factor.value_or(0);
   Points shape;  // of the imperfection
@@ -161,12 +272,14 @@ Json run_step(Context& context, const CollapseOptions& options) {
     }
   }
   entry["linear_lambda"] = linear;
-  const auto rule = shape.empty() ? follow_rule(context, options, loads, linear)
-                                  : follow_imperfect(context, options, loads, linear, shape);
+  const Json critical_points = follow_undisturbed(context, options, loads, linear, entry);
+  Question question{loads, linear, context.system().rest(), {}, std::move(shape)};
+  if (!critical_points.empty()) question.first = critical_points.front()["lambda"].get<double>();
+  const auto rule = follow_both_signs(context, options, question, entry);
   entry["critical_lambda"] = rule.critical;
-  entry["criterion"] = rule.criterion;
+  entry["criterion"] = rule.criterion + explanation(rule, options, question);
   entry["path"] = rule.path;
-  entry["critical_points"] = follow_undisturbed(context, options, loads, linear, entry);
+  entry["critical_points"] = critical_points;
   if (const double reference = reference_load(context, loads); reference > 0) {
     entry["critical_load"] = rule.critical * reference;
     entry["safety_factors"] = Json::array();

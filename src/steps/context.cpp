@@ -179,8 +179,16 @@ analysis::PathSummary follow(Context& context, const std::string& what, int incr
                              analysis::PathCallback callback, const analysis::PathStart& start) {
   auto options = context.deck.solver;
   options.increments = increments;
+  return follow(context, what, options, std::move(callback), start);
+}
+
+analysis::PathSummary follow(Context& context, const std::string& what,
+                             const analysis::NewtonOptions& options, analysis::PathCallback callback,
+                             const analysis::PathStart& start) {
   callback.iteration = teller(context, what);
-  return analysis::follow_path(context.system(), context.workspace(), options, callback, start);
+  auto path = analysis::follow_path(context.system(), context.workspace(), options, callback, start);
+  context.system().check_prescribed();
+  return path;
 }
 
 analysis::PathSummary follow_arc(Context& context, const std::string& what,
@@ -188,8 +196,10 @@ analysis::PathSummary follow_arc(Context& context, const std::string& what,
                                  const std::optional<analysis::Watch>& watch, analysis::PathCallback callback,
                                  const analysis::PathStart& start) {
   callback.iteration = teller(context, what);
-  return analysis::follow_arc(context.system(), context.workspace(), context.deck.solver, options, watch,
-                              callback, start);
+  auto path = analysis::follow_arc(context.system(), context.workspace(), context.deck.solver, options, watch,
+                                   callback, start);
+  context.system().check_prescribed();
+  return path;
 }
 
 }  // namespace tautline::steps

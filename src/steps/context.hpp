@@ -114,10 +114,16 @@ Json run_step(Context& context, const CollapseOptions& options);
 Json run_step(Context& context, const RodShapingOptions& options);
 Json run_step(Context& context, const InverseOptions& options);
 
-/// Follows the path of a stage that was begun, with progress on the live line; stops at lambda = k /
+/// @brief Follows the path of a stage that was begun, with progress on the live line; stops at lambda = k /
 /// increments at least and tells `callback` wherever it comes to rest and what critical points it passes.
+/// @throws std::logic_error if what loads move is not where they put it
 analysis::PathSummary follow(Context& context, const std::string& what, int increments = 1,
                              analysis::PathCallback callback = {}, const analysis::PathStart& start = {});
+
+/// The same with options other than the deck's.
+analysis::PathSummary follow(Context& context, const std::string& what,
+                             const analysis::NewtonOptions& options, analysis::PathCallback callback = {},
+                             const analysis::PathStart& start = {});
 
 /// Follows such a stage by the length of its path.
 analysis::PathSummary follow_arc(Context& context, const std::string& what,

@@ -48,6 +48,21 @@ std::vector<Part> parts_of(const EquilibriumOptions& options, const std::vector<
   return parts;
 }
 
+/// An equilibrium that the structure would leave at the slightest touch is no result, unless it is meant.
+void refuse_unstable(const EquilibriumOptions& options, const StageRunner& runner, Json& entry) {
+  if (entry["status"] != "done" || options.allow_unstable || options.control == Control::arc_length) return;
+  const int negative = runner.entries().back()["negative_pivots"];
+  if (negative == 0) return;
+  entry["status"] = "not_converged";
+  entry["reason"] = fmt::format(
+      "the equilibrium is unstable: {} direction{} in which the structure would leave it (negative pivots). "
+      "Where "
+      "critical_points tells of a bifurcation on the way, take its branch (control: arc_length, branch: 1) "
+      "or disturb "
+      "the structure with a small load; else try increments. allow_unstable: true takes it as it is",
+      negative, negative == 1 ? "" : "s");
+}
+
 void follow_parts(Context& context, const EquilibriumOptions& options, StageRunner& runner, Json& entry) {
   const auto acting = options.reset ? std::vector<std::string>{} : context.acting_loads;
   const auto wanted = options.loads ? *options.loads : names_of(context.system().model().loads);
@@ -73,6 +88,7 @@ void follow_parts(Context& context, const EquilibriumOptions& options, StageRunn
     break;
   }
   context.acting_loads = wanted;
+  refuse_unstable(options, runner, entry);
 }
 
 }  // namespace

@@ -169,12 +169,12 @@ assembly::Boundary boundary_with(Context& context, const std::vector<std::string
   return boundary;
 }
 
-double reference_load(const Context& context, const std::vector<std::string>& loads) {
+double reference_load(Context& context, const std::vector<std::string>& loads) {
   double force = 0, moment = 0;
-  for (const auto& load : context.deck.loads) {
+  for (const auto& load : context.system().model().loads) {
     if (!has(loads, load.name)) continue;
-    force += load.force.norm();
-    moment += load.moment.norm();
+    force += static_cast<double>(load.nodes.size()) * load.force.norm();
+    moment += static_cast<double>(load.nodes.size()) * load.moment.norm();
   }
   return force > 0 ? force : moment;
 }

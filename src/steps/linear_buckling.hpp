@@ -33,8 +33,8 @@ std::vector<std::string> scaled_loads(const Context& context,
 /// What is held and acts at present, with the loads named added once more, `factor` times.
 assembly::Boundary boundary_with(Context& context, const std::vector<std::string>& loads, double factor = 1);
 
-/// Sum of the sizes of the nodal forces named, or of the moments if there are no forces [N], [N m].
-double reference_load(const Context& context, const std::vector<std::string>& loads);
+/// Sum over the nodes of the sizes of the forces named, or of the moments if there are no forces [N], [N m].
+double reference_load(Context& context, const std::vector<std::string>& loads);
 
 /// Brings the system to rest under what acts at present. @return why it failed, or nothing
 std::string come_to_rest(Context& context);

@@ -1,9 +1,12 @@
 #include "steps/processes.hpp"
 
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <thread>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -46,15 +49,23 @@ std::vector<int> run_side_by_side(const std::vector<Command>& commands, int jobs
   std::vector<int> codes(commands.size(), static_cast<int>(ExitCode::interrupted));
   std::map<pid_t, std::size_t> running;
   std::size_t next = 0;
+  bool told = false;  // those that run, to stop
   while (true) {
     while (next < commands.size() && static_cast<int>(running.size()) < jobs && !interrupt_requested()) {
       running.emplace(start(commands[next]), next);
       ++next;
     }
     if (running.empty()) return codes;
+    if (interrupt_requested() && !told) {
+      for (const auto& [id, index] : running) kill(id, SIGTERM);
+      told = true;
+    }
     int status = 0;
-    const pid_t id = waitpid(-1, &status, 0);
-    if (id < 0 && errno == EINTR) continue;
+    const pid_t id = waitpid(-1, &status, WNOHANG);
+    if (id == 0 || (id < 0 && errno == EINTR)) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      continue;
+    }
     if (id < 0) throw LibraryError(fmt::format("waiting for a run failed: {}", std::strerror(errno)));
     const auto found = running.find(id);
     if (found == running.end()) continue;

@@ -55,8 +55,8 @@ class Search {
     const auto start = system.begin_stage(context_.boundary(hold, true));
     auto options = context_.deck.solver;
     options.min_step = std::max(options.min_step, shortest);
-    const auto path =
-        analysis::follow_path(system, context_.workspace(), options, {}, {0, context_.is_lost(start), {}});
+    const auto path = follow(context_, fmt::format("release, held [{}]", join(hold)), options, {},
+                             {0, context_.is_lost(start), {}, {}});
     result_.attempts.push_back({{"hold", hold},
                                 {"reached", path.reached},
                                 {"newton_iterations", path.newton_iterations},

@@ -196,11 +196,13 @@ ExitCode run(const deck::Deck& deck, const RunSettings& settings, Progress& prog
   const auto checkpoint = settings.from.empty() ? std::nullopt : find_checkpoint(deck, settings.from);
   Context context(deck, settings.directory, settings.pictures && deck.output.pictures, progress);
   la::on_root([&] { output::prepare_directory(settings.directory); });
+  watch_for_interrupt();
   context.results = start_results(deck);
   if (la::takes_petsc_options())
     progress.say(
         "TAUTLINE_PETSC_OPTIONS=1: PETSc's options come from .petscrc files and PETSC_OPTIONS as well");
   context.note_model();
+  context.save();
   ExitCode code = ExitCode::done;
   std::string status = "done";
   try {

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <tautline/analysis/relaxation.hpp>
-#include <tautline/analysis/stability.hpp>
 #include <tautline/assembly/mechanism.hpp>
 #include <tautline/core/error.hpp>
 #include <tautline/core/stopwatch.hpp>
@@ -29,6 +27,25 @@ Json newton_table(const analysis::PathSummary& path) {
     table.push_back({{"lambda", point.lambda}, {"force_and_increment", rows}});
   }
   return table;
+}
+
+analysis::LastResort last_resort_of(Fallback fallback) {
+  if (fallback == Fallback::descent) return analysis::LastResort::descent;
+  if (fallback == Fallback::dynamic_relaxation) return analysis::LastResort::dynamic_relaxation;
+  return analysis::LastResort::none;
+}
+
+const char* key_of(analysis::LastResort method) {
+  return method == analysis::LastResort::descent ? "descent" : "dynamic_relaxation";
+}
+
+Json last_resort_json(const analysis::LastResortSummary& tried) {
+  Json entry{{"gave_up", tried.gave_up},
+             {"steps", tried.steps},
+             {"residual", tried.residual},
+             {"newton_iterations", tried.newton_iterations}};
+  if (tried.method == analysis::LastResort::dynamic_relaxation) entry["peaks"] = tried.peaks;
+  return entry;
 }
 
 /// Of each of the many points of a path followed by its length the number of iterations.
@@ -116,10 +133,13 @@ analysis::PathSummary StageRunner::follow_stage(const StageOptions& stage, bool 
                                                 Checkpoint& bookmark) {
   const bool walks = is_last && options_.control == Control::arc_length;
   analysis::PathStart start;
+  start.last_resort = last_resort_of(options_.fallback);
   start.unknown = options_.fallback == Fallback::automatic && context_.is_lost(imbalance);
   if (context_.resume) {
     context_.system().return_to(context_.resume->place);
-    start = {context_.resume->place.lambda, false, context_.resume->arc};
+    start.unknown = false;
+    start.lambda = context_.resume->place.lambda;
+    start.arc = context_.resume->arc;
     context_.resume.reset();
   }
   analysis::PathCallback callback;
@@ -132,59 +152,13 @@ analysis::PathSummary StageRunner::follow_stage(const StageOptions& stage, bool 
     critical_.push_back(critical_point_json(context_.system(), point, options_.monitor));
     critical_.back()["stage"] = stage.name;
   };
+  callback.gave_up = [&](const analysis::LastResortSummary& tried) {
+    context_.progress.say(fmt::format("{} | {}: Newton's method gave up at lambda = {:.4g}; {} follows",
+                                      context_.step_name, stage.name, tried.gave_up_at,
+                                      key_of(tried.method)));
+  };
   if (walks) return walk(stage.name, callback, start);
   return follow(context_, stage.name, is_last ? options_.increments : 1, callback, start);
-}
-
-/// By descent or dynamic relaxation, then Newton's method, from where the path ended.
-analysis::DescentSummary StageRunner::leave_path(const std::string& name, Json& told) {
-  auto& system = context_.system();
-  const bool relaxes = options_.fallback == Fallback::dynamic_relaxation;
-  const std::string way = relaxes ? "dynamic relaxation" : "downhill in energy";
-  const auto tell = [&](int step, double residual) {
-    context_.progress.update(
-        fmt::format("{} | {}: {}, step {}, residual {:.1e}", context_.step_name, name, way, step, residual));
-  };
-  auto polish = context_.deck.solver;
-  polish.max_iterations = std::max(polish.max_iterations, analysis::NewtonOptions{}.max_iterations);
-  if (!relaxes) return analysis::descend(system, context_.workspace(), polish, tell);
-  const auto relaxed = analysis::relax(system, context_.workspace(), {}, tell);
-  told["peaks"] = relaxed.peaks;
-  return {relaxed.steps, relaxed.residual, analysis::solve_newton(system, context_.workspace(), polish)};
-}
-
-Json StageRunner::fall_back(const StageOptions& stage, analysis::PathSummary& path) {
-  const bool asked =
-      options_.fallback == Fallback::descent || options_.fallback == Fallback::dynamic_relaxation;
-  if (path.reached || !asked || options_.control == Control::arc_length) return nullptr;
-  auto& system = context_.system();
-  const std::string way =
-      options_.fallback == Fallback::dynamic_relaxation ? "dynamic relaxation" : "descent in energy";
-  context_.progress.say(fmt::format("{} | {}: Newton's method gave up at lambda = {:.4g}; {}",
-                                    context_.step_name, stage.name, path.lambda(), way));
-  system.commit();
-  system.set_lambda(1);
-  Json told{{"gave_up", path.reason}};
-  auto end = leave_path(stage.name, told);
-  told["steps"] = end.steps;
-  told["residual"] = end.residual;
-  told["newton_iterations"] = end.newton.newton_iterations();
-  path.newton_iterations += end.newton.newton_iterations();
-  if (!end.newton.converged()) {
-    path.reason += fmt::format("; {} then came to {:.1e} of the reference force in {} steps, from where {}",
-                               way, end.residual, end.steps, end.newton.reason);
-    system.roll_back();
-    system.set_lambda(path.lambda());
-    return told;
-  }
-  system.commit();
-  path.reached = true;
-  path.reason = fmt::format("reached by {} in {} steps and {} Newton iterations", way, end.steps,
-                            end.newton.newton_iterations());
-  analysis::count_negative(system, context_.workspace());
-  path.inertia = context_.workspace().solver.inertia();
-  path.points.push_back({1, std::move(end.newton), path.inertia.negative, {}});
-  return told;
 }
 
 bool StageRunner::run(const StageOptions& stage, const std::vector<std::string>& loads, bool is_last) {
@@ -204,7 +178,6 @@ bool StageRunner::run(const StageOptions& stage, const std::vector<std::string>&
                                     stage.name, start.force));
   if (!anew && !entries_.empty()) save_point(bookmark, true);
   auto path = follow_stage(stage, is_last, start, bookmark);
-  const Json left = fall_back(stage, path);
   watch.reset();
   if (path.reached) context_.equilibrium_known = true;
   if (path.reached && path.descent_steps > 0)
@@ -217,8 +190,8 @@ bool StageRunner::run(const StageOptions& stage, const std::vector<std::string>&
     if (const auto mechanism = assembly::find_mechanism(system, context_.workspace()))
       throw ModelError(fmt::format("stage \"{}\": {}", stage.name, mechanism->text));
   entries_.push_back(entry_of(stage, start, path, seconds));
-  if (!left.is_null())
-    entries_.back()[options_.fallback == Fallback::descent ? "descent" : "dynamic_relaxation"] = left;
+  if (path.last_resort)
+    entries_.back()[key_of(path.last_resort->method)] = last_resort_json(*path.last_resort);
   return path.reached;
 }
 

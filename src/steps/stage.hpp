@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <tautline/analysis/descent.hpp>
+#include <tautline/analysis/path.hpp>
 
 #include "steps/context.hpp"
 
@@ -34,9 +34,6 @@ class StageRunner {
                              const analysis::PathStart& start);
   void note(const analysis::PathPoint& point);
   void save_point(Checkpoint& bookmark, bool always);
-  analysis::DescentSummary leave_path(const std::string& name, Json& told);
-  /// What the deck asks for where the path ends early; null if it asks for nothing.
-  Json fall_back(const StageOptions& stage, analysis::PathSummary& path);
   Json entry_of(const StageOptions& stage, const assembly::OutOfBalance& start,
                 const analysis::PathSummary& path, double seconds) const;
 

@@ -179,6 +179,47 @@ TEST(ArcLength, IsTakenUpAgainAtAnyPointAndGoesTheSameWay) {
   }
 }
 
+TEST(ArcLength, MovesPrescribedUnknownsWithLambda) {
+  for (const double pull : {0.0, 8.0})
+    for (const auto constraint : {ArcConstraint::cylindrical, ArcConstraint::spherical})
+      for (const double weight : {1.0, 0.0}) {  // 0: a metric that sees no motion of the free unknowns
+        DrivenProblem problem(pull);
+        problem.weight = weight;
+        problem.drive_weight = weight > 0 ? 1 : 1e-3;
+        auto work = workspace();
+        auto options = steps_of(0.1);
+        options.constraint = constraint;
+        const auto summary = follow_arc(problem, work, {}, options);
+        ASSERT_TRUE(summary.reached) << summary.reason;
+        EXPECT_NEAR(problem.lambda, 1, 1e-14);
+        EXPECT_NEAR(problem.point[5], DrivenProblem::way, 1e-14);
+        for (int i = 0; i < 5; ++i)
+          EXPECT_NEAR(problem.point[i] + std::pow(problem.point[i], 3), pull + DrivenProblem::way, 1e-8);
+      }
+}
+
+TEST(ArcLength, GoesByLambdaWhereNothingMoves) {
+  class Stressed : public DenseProblem {
+   public:
+    using DenseProblem::DenseProblem;
+    bool changes_at_rest() override { return true; }
+  } problem([](const VecX& x, double) -> VecX { return x; },
+            [](const VecX& x) -> MatX { return MatX::Identity(x.size(), x.size()); });
+  auto work = workspace();
+  const auto summary = follow_arc(problem, work, {}, {});
+  EXPECT_TRUE(summary.reached) << summary.reason;
+  EXPECT_EQ(problem.lambda, 1);
+}
+
+/// A metric that sees nothing at all makes lengths of zero: it must end all the same.
+TEST(ArcLength, EndsWhereStepsHaveNoLength) {
+  DrivenProblem problem(1);
+  problem.weight = problem.drive_weight = 0;
+  auto work = workspace();
+  const auto summary = follow_arc(problem, work, {}, {});
+  EXPECT_FALSE(summary.reached);
+}
+
 TEST(ArcLength, OfLoadsThatMoveNothingSaysSo) {
   DenseProblem problem([](const VecX& x, double) -> VecX { return x; },
                        [](const VecX& x) -> MatX { return MatX::Identity(x.size(), x.size()); });

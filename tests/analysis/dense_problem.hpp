@@ -31,6 +31,8 @@ class DenseProblem : public PathProblem {
   double reference = 1;  ///< force the residual is compared with
   double size = 1;       ///< what an increment is compared with
 
+  const Gradient& gradient() const { return gradient_; }
+  const Hessian& hessian() const { return hessian_; }
   /// Residual at the present point and lambda.
   double out_of_balance() const { return gradient_(point, lambda).norm(); }
 
@@ -82,6 +84,40 @@ class DenseProblem : public PathProblem {
   Hessian hessian_;
   la::BlockLayout layout_ = layout_of(n / 3);
   VecX origin_ = VecX::Zero(n);
+};
+
+/// x + x^3 = (pull) lambda + x5 of five equal unknowns, where x5 = 2 lambda is prescribed.
+class DrivenProblem : public DenseProblem {
+ public:
+  static constexpr double way = 2;
+  explicit DrivenProblem(double pull)
+      : DenseProblem(
+            [pull](const VecX& x, double lambda) {
+              VecX f(n);
+              for (int i = 0; i < 5; ++i) f[i] = x[i] + x[i] * x[i] * x[i] - pull * lambda - way * lambda;
+              f[5] = 0;
+              return f;
+            },
+            [](const VecX& x) {
+              MatX k = MatX::Identity(n, n);
+              for (int i = 0; i < 5; ++i) k(i, i) += 3 * x[i] * x[i];
+              return k;
+            }) {}
+
+  void accept(const la::Vector& x) override {
+    DenseProblem::accept(x);
+    point[5] = way * lambda;
+  }
+  void weights(double, la::Vector& d) const override {
+    VecX all = VecX::Constant(n, weight);
+    all[5] = 0;
+    d.write(std::span(all.data() + 3 * layout().first, static_cast<std::size_t>(3 * layout().local)));
+  }
+  void drive_rate(la::Vector& w) const override { w = vector_of(way * VecX::Unit(n, 5)); }
+  double drive_size(double) const override { return drive_weight * way * way; }
+  bool changes_at_rest() override { return true; }
+
+  double weight = 1, drive_weight = 1;
 };
 
 inline Workspace workspace() {

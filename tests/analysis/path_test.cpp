@@ -185,5 +185,68 @@ TEST(Path, IsAtItsLastConvergedPointAfterAnError) {
   EXPECT_LT(problem.out_of_balance(), 1e-8);
 }
 
+/// Newton's method is given no room, so that the last resort finds the end.
+TEST(Path, HasPrescribedUnknownsWhereLambdaHasThemWhoeverFoundTheEnd) {
+  for (const double pull : {0.0, 8.0})
+    for (const auto method : {LastResort::none, LastResort::descent, LastResort::dynamic_relaxation}) {
+      DrivenProblem problem(pull);
+      problem.size = 10;  // first pushes of a fiftieth: the problem becomes stiffer on the way
+      auto work = workspace();
+      NewtonOptions options;
+      if (method != LastResort::none) {
+        options.max_iterations = 1;
+        options.min_step = 0.9;
+      }
+      std::vector<double> told;
+      PathStart start;
+      start.last_resort = method;
+      const auto summary =
+          follow_path(problem, work, options,
+                      {{}, [&](const PathPoint& point) { told.push_back(point.lambda); }, {}, {}}, start);
+      ASSERT_TRUE(summary.reached) << summary.reason;
+      EXPECT_EQ(problem.lambda, 1);
+      EXPECT_EQ(problem.point[5], DrivenProblem::way);
+      EXPECT_EQ(problem.committed, problem.point);
+      for (int i = 0; i < 5; ++i)
+        EXPECT_NEAR(problem.point[i] + std::pow(problem.point[i], 3), pull + DrivenProblem::way, 1e-8);
+      EXPECT_EQ(told.back(), 1) << "the end is a point of the path as any other";
+      EXPECT_EQ(summary.points.back().lambda, 1);
+      EXPECT_EQ(summary.last_resort.has_value(), method != LastResort::none);
+    }
+}
+
+/// A hump between two wells: x^3 - x + lambda / 10 in all unknowns; from the left well a step leaps to the
+/// hump.
+TEST(Path, DoesNotTakeAnUnstableEquilibriumThatNoPathLeadsTo) {
+  class Leaper : public DenseProblem {
+   public:
+    using DenseProblem::DenseProblem;
+    bool predict(Workspace&) override {
+      if (lambda - at_ > 0.3) point.setZero();  // a bad first guess of a long step, on the hump
+      restart();
+      return true;
+    }
+    void commit() override {
+      DenseProblem::commit();
+      at_ = lambda;
+    }
+
+   private:
+    double at_ = 0;
+  };
+  const auto well = six_times([](double x, double lambda) { return x * x * x - x + lambda / 10; },
+                              [](double x) { return 3 * x * x - 1; });
+  Leaper problem(well.gradient(), well.hessian());
+  problem.point = problem.committed = VecX::Constant(DenseProblem::n, -1);
+  problem.restart();
+  auto work = workspace();
+  const auto summary = follow_path(problem, work, {});
+  ASSERT_TRUE(summary.reached) << summary.reason;
+  EXPECT_GT(summary.failed_attempts, 0);
+  EXPECT_EQ(summary.inertia.negative, 0);
+  EXPECT_NEAR(std::pow(problem.point[0], 3) - problem.point[0] + 0.1, 0, 1e-8);
+  EXPECT_LT(problem.point[0], -1) << "the well it began in, which moves outwards";
+}
+
 }  // namespace
 }  // namespace tautline::analysis

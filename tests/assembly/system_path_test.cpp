@@ -1,4 +1,5 @@
 #include <cmath>
+#include <stdexcept>
 #include <tautline/assembly/system.hpp>
 
 #include "assembly/dense.hpp"
@@ -50,6 +51,49 @@ TEST(SystemPath, LoadRateOfAMovingSupportPullsThroughTheTangent) {
   EXPECT_NEAR(gathered(q)[at(system, 1)], stiffness * 0.01, 1e-7);
   system.add_drives(way);
   EXPECT_EQ(gathered(way)[at(system, 2)], 0.01);
+}
+
+/// Two facets under pressure, beams, and an arm with a dead load at its end, with one support displaced and
+/// another turned: the load rate is the derivative of the residual by lambda, whatever pulls.
+TEST(SystemPath, LoadRateIsTheDerivativeOfTheResidual) {
+  auto model = two_facets();
+  model.nodes.push_back({0.4, 2.4, 0.9});
+  model.links.push_back({2, 5, false, {}, -1});
+  add_cable(model, 2, 1, 5, 5e-3);
+  System system(model);
+  auto push = load(3, Vec3(1, 2, 3)), turn = load(4, Vec3::Zero());
+  push.displacement = Vec3(0.05, 0.02, -0.03);
+  turn.rotation = Vec3(0.1, 0.3, -0.2);
+  model::Load blow;
+  blow.on = {"cloth"};
+  blow.pressure = 400;
+  system.begin_stage({{support({3}), support({4}, clamped)}, {push, turn, load(5, {10, -20, 300}), blow}});
+  for (const double lambda : {0.0, 0.6}) {
+    constexpr double h = 1e-4;
+    la::Vector x(system.layout()), ahead(system.layout()), back(system.layout()), q(system.layout());
+    system.set_lambda(lambda);
+    system.accept(x);
+    system.restart();
+    system.set_lambda(lambda + h);
+    system.residual(x, ahead);
+    system.set_lambda(lambda - h);
+    system.residual(x, back);
+    system.set_lambda(lambda);
+    system.load_rate(q);
+    const VecX exact = (gathered(back) - gathered(ahead)) / (2 * h);
+    EXPECT_LT((gathered(q) - exact).norm(), 1e-5 * exact.norm()) << "h^2 and rounding over h";
+  }
+}
+
+TEST(SystemPath, FindsAPrescribedMotionThatWasLost) {
+  System system(two_cables());
+  auto pull = load(2, Vec3::Zero());
+  pull.displacement = Vec3(0.01, 0, 0);
+  const Boundary boundary{{support({0, 2})}, {pull}};
+  solve(system, boundary);
+  EXPECT_NO_THROW(system.check_prescribed());
+  system.set_lambda(0.5);  // as if a solver had said so, and left the support where it is
+  EXPECT_THROW(system.check_prescribed(), std::logic_error);
 }
 
 TEST(SystemPath, ReturnsToAPointThatWasKept) {

@@ -4,7 +4,8 @@
 
 namespace tautline::analysis {
 
-/// What the length of a step along the path is measured in: motions alone, or motions and load.
+/// What the length of a step along the path is measured in: motions alone (of free unknowns and of prescribed
+/// ones), or motions and load.
 enum class ArcConstraint { cylindrical, spherical };
 
 /// A path followed by its length, round limit points and back.

@@ -22,6 +22,9 @@ SoftestMode softest_mode(const PathProblem& problem, la::DirectSolver& factored,
 /// Assembles and factors the tangent of the present point. @return its negative pivots
 int count_negative(PathProblem& problem, Workspace& workspace);
 
+/// The same without those that rounding may have made negative.
+int count_firmly_negative(PathProblem& problem, Workspace& workspace);
+
 /// Cosine between a mode and the load, both measured by the weights.
 double load_share(const la::Vector& mode, const la::Vector& load_rate, const la::Vector& weights);
 

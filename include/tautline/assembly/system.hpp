@@ -3,6 +3,7 @@
 /// The model as a nonlinear problem: gather -> kernel -> scatter on every rank's share of the elements. Owns
 /// the parallel layout.
 
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -55,6 +56,12 @@ struct Drive {
   Vec3 way = Vec3::Zero();  ///< in the block's unknowns; zero where it is free [m] or [rad]
 };
 
+/// Where loads put a node in the course of a stage.
+struct Prescribed {
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< displacement [m]
+  std::string load;                             ///< one that moves it
+};
+
 /// A point of a stage's path.
 struct Place : analysis::PathProblem::Kept {
   model::State state;
@@ -95,8 +102,8 @@ struct Pull {
 /// The model is held whole on every rank; elements, unknowns and factors are dealt out. A stage begins with
 /// `begin_stage`: what acts goes from what it was to what the boundary says as lambda goes from 0 to 1;
 /// forces that are out of balance at its start (reactions of released supports, prestress) are kept as
-/// external forces and ramped out; supports that move go their way; unstressed lengths asked for by
-/// `set_target_strains` are ramped in.
+/// external forces and ramped out; supports that move are, in every residual, where lambda has them;
+/// unstressed lengths asked for by `set_target_strains` are ramped in.
 class System : public analysis::PathProblem {
  public:
   explicit System(model::Model model);
@@ -174,6 +181,14 @@ class System : public analysis::PathProblem {
   double largest_deformation(const la::Vector& response) const;
   /// Adds what moving supports go while lambda grows by one.
   void add_drives(la::Vector& x) const;
+  void drive_rate(la::Vector& w) const override;
+  double drive_size(double rotation_weight) const override;
+  bool changes_at_rest() override;
+
+  /// @brief Compares the nodes that loads move with what those loads say at the present lambda, from the
+  /// boundary and the state alone: no solver may lose a prescribed motion.
+  /// @throws std::logic_error naming load and node; that is a bug
+  void check_prescribed() const;
 
   /// Mass matrix of the free unknowns in the present state; rows and columns of held ones are zero.
   la::SymmetricMatrix mass(MassKind kind = MassKind::consistent) const;
@@ -237,11 +252,25 @@ class System : public analysis::PathProblem {
   std::set<int> turned_nodes(const Boundary& boundary) const;
   Vec3 spin_to(int node, const Vec3& target) const;
   void find_drives(const Boundary& boundary);
+  void note_prescribed(const Boundary& boundary);
+  /// Increments of all unknowns from the point accepted last to x; what supports prescribe is where lambda
+  /// has it, whatever x says.
+  std::vector<double> increments_to(const la::Vector& x) const;
+  /// Residual at `state`, zero where held.
+  void residual_at(const model::State& state, la::Vector& f);
+  /// What supports go while lambda grows by one, by unknown.
+  std::vector<double> drive_rates() const;
+  /// -d residual / d lambda with the nodes where they are, of held unknowns, too.
+  std::vector<double> force_rate();
   /// K dx for an increment of all unknowns; complete in this rank's own entries.
-  std::vector<double> stiffness_times(const std::vector<double>& increment) const;
+  std::vector<double> stiffness_times(const std::vector<double>& increment);
   std::span<const double> own_part(const std::vector<double>& all) const;
   std::vector<double> gathered(const std::vector<double>& own_complete) const;
   void apply(double lambda);
+  /// Calls `visit(nodes, rotations, force, tangent)` for all that resists on this rank, with what each
+  /// element adds given by `contribution_of(element)`.
+  template <class ContributionOf, class Visit>
+  void for_each_stiffness(const ContributionOf& contribution_of, const Visit& visit) const;
   model::Rounding rounding_beside(const Vec<2>& forces_and_moments) const;
   /// Norms over the nodes of forces and of moments, of `value(block, component)` in this rank's blocks.
   template <class Value>
@@ -268,6 +297,7 @@ class System : public analysis::PathProblem {
   Acting start_, end_, now_;
   std::vector<double> start_residual_;  // of all unknowns, ramped out
   std::vector<Drive> drives_;
+  std::map<int, Prescribed> prescribed_;  // by node, for the check
   std::optional<std::vector<double>> wanted_strain_;
   double lambda_ = 1, driven_to_ = 0, committed_drive_ = 0, size_ = 1;
   double support_stiffness_ = 1;

@@ -64,6 +64,7 @@ struct EquilibriumOptions {
   /// Names of the loads ramped up in the last stage, which act from then on; not given: all of the deck.
   std::optional<std::vector<std::string>> loads;
   bool reset = false;                ///< start again from the reference configuration (as form-found)
+  bool allow_unstable = false;       ///< the step is done also in an unstable equilibrium
   int increments = 1;                ///< the last stage comes to rest at lambda = 1/n, 2/n, ..., 1
   std::vector<std::string> monitor;  ///< groups or selections whose motion is reported at every rest
   Control control = Control::load;
