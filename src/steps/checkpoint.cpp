@@ -171,7 +171,7 @@ Json read(const fs::path& path) {
 }
 
 std::vector<std::size_t> sizes_of(const model::State& state) {
-  return {state.displacement.size(), state.rotation.size(), state.hinge_angle.size()};
+  return {state.displacement.size(), state.rotation.size(), state.hinge_angle.size(), state.turn.size()};
 }
 
 /// Of every list.
@@ -180,7 +180,7 @@ std::vector<std::size_t> sizes_of(const assembly::Rest& rest) {
   auto sizes = sizes_of(rest.state);
   sizes.insert(sizes.end(), {a.force.size(), a.moment.size(), a.line.size(), a.pressure.size(),
                              a.temperature.size(), a.temperature_gradient.size(), a.strain.size(),
-                             rest.turned.size(), rest.stiffness_factor.size()});
+                             rest.stiffness_factor.size()});
   return sizes;
 }
 

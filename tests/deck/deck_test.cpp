@@ -1,6 +1,9 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <deck/files.hpp>
+#include <filesystem>
 #include <tautline/deck/deck.hpp>
 
 namespace tautline::deck {

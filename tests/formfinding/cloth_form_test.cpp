@@ -46,8 +46,7 @@ TEST(ClothForm, IsTheShapeOfFilmAndCablesFoundTogether) {
   options.tolerance = 1e-11;
   const auto film =
       find_minimal_film({problem.net,
-                         problem.triangles,
-                         problem.surface_stress,
+                         isotropic_film(problem.triangles, problem.surface_stress),
                          VecX::Constant(static_cast<Eigen::Index>(problem.net.branches.size()), 3.0),
                          {}},
                         options);

@@ -72,7 +72,7 @@ TEST(GroupSummary, HasTheAxialForceOfBothEndsOfABeamWhicheverComesFirst) {
     add_beam(model, mast, upwards ? 0 : 1, upwards ? 1 : 0);
     model.beams[0].line_load = {7, 0, -30};
     const auto response = evaluate_response(model, State::reference(model));
-    const auto summary = summarise_groups(model, response).at("mast");
+    const auto summary = summarise_groups(model, State::reference(model), response).at("mast");
     EXPECT_NEAR(summary.axial_min, -60, 1e-9);
     EXPECT_NEAR(summary.axial_max, 60, 1e-9);
     const Vec3 start = first_end_force(model, response, 0);

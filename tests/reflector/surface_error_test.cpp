@@ -213,8 +213,10 @@ TEST(SurfaceError, BestFitIsNeverAboveTheOthersByArea) {
     const Paraboloid dish(12, 6 + 4 * std::abs(draw(0)), seed % 3 == 0 ? -6 : 3 * std::abs(draw(1)));
     SurfaceSample sample = hexagon(5, 1.1, [&](double x, double y) { return dish.height(x, y); });
     int i = 2;
-    for (Vec3& point : sample.positions)
-      point += std::pow(10, draw(7) - 1.5) * Vec3(draw(i++), draw(i++), draw(i++));
+    for (Vec3& point : sample.positions) {
+      point += std::pow(10, draw(7) - 1.5) * Vec3(draw(i), draw(i + 1), draw(i + 2));
+      i += 3;
+    }
     const SurfaceError error = measure_surface(dish, sample);
     EXPECT_LE(error.rms_best_fit, error.rms_area_weighted * (1 + 1e-12)) << seed;
     EXPECT_LE(error.rms_best_fit, error.rms_area_weighted_direct * (1 + 1e-12)) << seed;

@@ -23,7 +23,7 @@ deck::Deck a_deck() {
 /// Two nodes, one beam, numbers of no meaning.
 Checkpoint some_checkpoint() {
   const Points two{Vec3(0.1, -2e-7, 3), Vec3(1, 0, 1e300)};
-  assembly::Rest rest{{two, {Mat3::Identity(), Mat3::Identity()}, {}}, {}, two, {}};
+  assembly::Rest rest{{two, {Mat3::Identity(), Mat3::Identity()}, {}, two}, {}, {}};
   rest.acting.force = rest.acting.moment = two;
   rest.acting.line = {Vec3(0, 0, -3)};
   Checkpoint checkpoint;
