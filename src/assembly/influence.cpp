@@ -40,8 +40,13 @@ Vec<6> force_rate(const System& system, const model::Cable& cable, CableQuantity
   if (model.groups[cable.group].kind == model::ElementKind::catenary)
     return catenary_rate(model, cable, u, quantity);
   const auto [properties, x_ref] = model::cable_data(model, cable);
-  if (quantity == CableQuantity::unstressed_length)
-    return element::cable_force_by_unstressed_length(properties, x_ref, u);
+  if (quantity == CableQuantity::unstressed_length) {
+    const Vec3 weight = model.groups[cable.group].cable.mass_per_length * model.acceleration;  // of a metre
+    Vec<6> rate = element::cable_force_by_unstressed_length(properties, x_ref, u);
+    rate.head<3>() -= weight / 2;
+    rate.tail<3>() -= weight / 2;
+    return rate;
+  }
   return element::evaluate_cable(properties, x_ref, u, element::Want::force).force /
          properties.axial_stiffness;  // the force is proportional to E A
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <tautline/core/error.hpp>
 #include <tautline/la/direct_solver.hpp>
@@ -29,10 +28,24 @@ void configure(::EPS eps, const SymmetricMatrix& stiffness, const SymmetricMatri
   check(STSetType(transform, STSINVERT), "STSetType");
 }
 
+/// Whether a vector moves no mass: that of an eigenvalue at infinity, whatever number stands for it.
+bool moves_no_mass(const SymmetricMatrix& mass, ::Vec x) {
+  constexpr double none = 1e-14;  // of what its unknowns could move
+  ::Vec product = nullptr;
+  check(VecDuplicate(x, &product), "VecDuplicate");
+  const Vector owner = Vector::adopt(product);
+  PetscReal largest = 0, length = 0;
+  PetscScalar moved = 0;
+  check(MatMult(mass.handle(), x, product), "MatMult");
+  check(MatNorm(mass.handle(), NORM_INFINITY, &largest), "MatNorm");
+  check(VecNorm(x, NORM_2, &length), "VecNorm");
+  check(VecDot(x, product, &moved), "VecDot");
+  return !(moved > none * largest * length * length);
+}
+
 /// Up to `count` pairs nearest to the shift that SLEPc finds outside the space of those known, put to them.
 void find_more(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count, double shift,
                EigenPairs& pairs) {
-  constexpr double infinite = 1e-14;  // of the nearest, inverted: no mass moves
   const EigenHandle eps;
   configure(eps.get(), stiffness, mass, count, shift);
   std::vector<::Vec> space;
@@ -43,16 +56,13 @@ void find_more(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, in
   check(EPSSolve(eps.get()), "EPSSolve");
   PetscInt converged = 0;
   check(EPSGetConverged(eps.get(), &converged), "EPSGetConverged");
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const double value : pairs.values) nearest = std::min(nearest, std::abs(value - shift));
   for (int i = 0; i < std::min<int>(count, converged); ++i) {
     ::Vec x = nullptr;
     check(MatCreateVecs(stiffness.handle(), &x, nullptr), "MatCreateVecs");
     Vector vector = Vector::adopt(x);
     PetscScalar value = 0;
     check(EPSGetEigenpair(eps.get(), i, &value, nullptr, x, nullptr), "EPSGetEigenpair");
-    nearest = std::min(nearest, std::abs(value - shift));
-    if (!(nearest > infinite * std::abs(value - shift)) && nearest > 0) continue;
+    if (moves_no_mass(mass, x)) continue;
     pairs.values.push_back(value);
     pairs.vectors.push_back(std::move(vector));
     pairs.residuals.push_back(0);

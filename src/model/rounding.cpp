@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include <tautline/model/element_data.hpp>
 
@@ -93,13 +94,21 @@ double largest_rotation(const State& state, const Shell& shell) {
   return largest;
 }
 
+/// How many last digits the strain of an element adds up: that of a line is a difference of places and lengths
+/// over a length, that of a facet one of displacements.
+template <class Element>
+constexpr double digits_added() {
+  return std::is_same_v<Element, Cable> || std::is_same_v<Element, Beam> ? 4 : 1;
+}
+
 /// Calls `visit(element, stiffness, last digits of its displacements and rotations)` for every element.
 template <class Visit>
 void for_each_digit(const Model& model, const State& state, const Visit& visit) {
   for_each_kind(model, [&](const auto& elements) {
     for (const auto& element : elements)
       visit(element, stiffness_of(model, element),
-            last_digit * Vec<2>(largest_displacement(state, element), largest_rotation(state, element)));
+            digits_added<std::decay_t<decltype(element)>>() * last_digit *
+                Vec<2>(largest_displacement(state, element), largest_rotation(state, element)));
   });
 }
 

@@ -166,6 +166,8 @@ RuleResult follow_rule(Context& context, const CollapseOptions& options, const Q
   auto result = Rule(context, options, question, signs).run();
   context.set_system(perfect);
   context.system().restore(question.rest);
+  if (const auto reason = come_to_rest(context); !reason.empty())  // on its supports, which are of a stage
+    throw LibraryError("collapse: the state before the imperfection is not found again: " + reason);
   return result;
 }
 

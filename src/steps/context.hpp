@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +16,7 @@
 #include <tautline/core/progress.hpp>
 #include <tautline/deck/deck.hpp>
 #include <tautline/output/fields.hpp>
+#include <tautline/output/file_names.hpp>
 #include <tautline/output/pictures.hpp>
 #include <tautline/reflector/paraboloid.hpp>
 #include <tautline/reflector/surface_error.hpp>
@@ -68,7 +68,7 @@ class Context {
   /// DIR/name
   std::string path(const std::string& name) const { return directory_ + "/" + name; }
   /// DIR/<step><ending>, with a file name made of the name of the step in hand
-  std::string step_path(const std::string& ending) const { return path(step_file_.at(step_name) + ending); }
+  std::string step_path(const std::string& ending) { return path(step_files_.of(step_name) + ending); }
   /// Writes results.json (rank 0).
   void save();
   /// Notes in results.json what the user must not overlook, and tells it: `code` for programs, `where` the
@@ -88,7 +88,7 @@ class Context {
   void draw_any(const std::string& name, const std::string& caption, const Picture& picture);
 
   std::string directory_, why_none_;
-  std::map<std::string, std::string> step_file_;  ///< by the step's name
+  output::FileNames step_files_;
   bool pictures_, root_;
   double output_seconds_ = 0;
   std::unique_ptr<assembly::System> system_;

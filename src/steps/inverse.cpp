@@ -128,7 +128,7 @@ std::vector<std::string> warnings_of(const Json& entry) {
 }
 
 /// DIR/<step>_cables.csv and DIR/<step>_targets.csv. Rank 0.
-void write_tables(const Context& context, const CableProblem& problem, const model::Model& model,
+void write_tables(Context& context, const CableProblem& problem, const model::Model& model,
                   const model::Response& response) {
   if (!context.deck.output.tables) return;
   std::array<std::vector<double>, 7> cables;

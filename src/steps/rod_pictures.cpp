@@ -168,7 +168,7 @@ void draw_rod(Context& context, const rod::RodShape& shape, const rod::RodReport
   draw_moments(context, shape);
 }
 
-void write_rod_tables(const Context& context, const rod::RodShape& shape, const rod::RodReport& report) {
+void write_rod_tables(Context& context, const rod::RodShape& shape, const rod::RodReport& report) {
   if (!context.deck.output.tables) return;
   la::on_root([&] {
     List number;

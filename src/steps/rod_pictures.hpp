@@ -15,6 +15,6 @@ void draw_rod(Context& context, const rod::RodShape& shape, const rod::RodReport
 /// DIR/<step>_nodes.csv:
 /// node,x,y,theta,reaction,strain,stiffness,moment,moment_of_links,node_error,miss_x,miss_y for nodes 0 to m,
 /// and DIR/<step>_rod.csv: s,x,y,theta,moment,deviation along the rod. Rank 0.
-void write_rod_tables(const Context& context, const rod::RodShape& shape, const rod::RodReport& report);
+void write_rod_tables(Context& context, const rod::RodShape& shape, const rod::RodReport& report);
 
 }  // namespace tautline::steps

@@ -39,20 +39,20 @@ model::Model two_beams(const Vec3& arm, model::Link link) {
   return model;
 }
 
-/// A state that the links allow, some tenths of a metre and a radian away.
-model::State moved_state(const System& system) {
+/// A state that the links allow, up to `size` metres and radians away.
+model::State moved_state(const System& system, double size = 0.2) {
   std::vector<double> x(static_cast<std::size_t>(system.n_dofs()));
   for (std::size_t i = 0; i < x.size(); ++i)
-    x[i] = system.held()[i] ? 0 : 0.2 * std::sin(1.7 * static_cast<double>(i) + 0.3);
+    x[i] = system.held()[i] ? 0 : size * std::sin(1.7 * static_cast<double>(i) + 0.3);
   return system.kinematics().moved(model::State::reference(system.model()), x);
 }
 
 /// Tangent against differences of the residual with dead loads and pressure present.
-void expect_consistent_tangent(model::Model model, const Boundary& boundary) {
+void expect_consistent_tangent(model::Model model, const Boundary& boundary, double size = 0.2) {
   System system(std::move(model));
   system.begin_stage(boundary);
   system.set_lambda(1);
-  system.set_state(moved_state(system));
+  system.set_state(moved_state(system, size));
   const MatX tangent = dense_tangent(system);
   MatX differences = derivative_of_residual(system);
   MatX symmetric = (differences + differences.transpose()) / 2;
@@ -173,6 +173,7 @@ Tied tied_at_random(unsigned seed) {
   model.groups[rods].beam = rod();
   for (int beam = 0; beam < n_beams; ++beam) add_beam(model, rods, 2 * beam, 2 * beam + 1);
   const int cloth = add_membrane_group(model, "cloth"), rope = add_cable_group(model, "rope", 1e4);
+  model.groups[rope].kind = model::ElementKind::bar;  // no kink where it goes slack
   const int first = 2 * n_beams;
   model.membranes.push_back({{first, below(first), first + 1}, cloth, Vec3(300, 200, 0)});
   add_cable(model, rope, first + 2, below(first), 0.02);
@@ -236,7 +237,7 @@ TEST(Links, TangentOfAnyMixtureOfTiesIsTheDerivativeOfTheResidual) {
     if (!is_possible(tied)) continue;
     ++met;
     SCOPED_TRACE(seed);
-    expect_consistent_tangent(tied.model, tied.boundary);
+    expect_consistent_tangent(tied.model, tied.boundary, 0.05);  // chains of arms add up
     if (HasFailure()) return;
   }
 }

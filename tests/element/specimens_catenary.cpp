@@ -17,8 +17,13 @@ Specimen catenary(const std::string& name, const CatenaryProperties& properties,
     });
     return answer_of(response, want);
   };
-  s.field_force = properties.mass_per_length * properties.unstressed_length * acceleration;
-  s.in_turned_field = [=](const Mat3& Q) { return catenary(name, properties, Q * acceleration); };
+  s.field_force =
+      properties.unstressed_length * (properties.mass_per_length * acceleration + properties.line_load);
+  s.in_turned_field = [=](const Mat3& Q) {
+    CatenaryProperties turned = properties;
+    turned.line_load = Q * properties.line_load;
+    return catenary(name, turned, Q * acceleration);
+  };
   return s;
 }
 

@@ -107,7 +107,7 @@ TEST(Tables, BeamsHoldEndForces) {
   write_beams(directory.file("beams.csv"), small_model(), small_response());
   const auto rows = lines_of(directory.file("beams.csv"));
   ASSERT_EQ(rows.size(), 2u);
-  EXPECT_EQ(rows[1], "1,frame,1,5,-12.5,0,0,0,0,0,0,0.25");
+  EXPECT_EQ(rows[1], "1,frame,1,5,-12.5,0,0,0,0,0,0,0.25,-12.5,0,0");
 }
 
 TEST(Tables, CutListJoinsTheSegmentsOfACable) {

@@ -114,9 +114,9 @@ case $1 in
     cd "$WORK"
     echo '-options_left' >.petscrc
     PETSC_OPTIONS=-help expect 0 "$TAUTLINE" run "$SOURCE/inputs/frame.yaml" -o "$out" --quiet --no-pictures
-    grep -qi 'option' "$WORK/out" "$WORK/err" && fail "options were taken"
+    grep -q 'Option Table' "$WORK/out" "$WORK/err" && fail "options were taken"
     TAUTLINE_PETSC_OPTIONS=1 expect 0 "$TAUTLINE" run "$SOURCE/inputs/frame.yaml" -o "$out" --quiet --no-pictures
-    says "$WORK/out" '[Oo]ption'
+    says "$WORK/out" 'Option Table'
     says "$out/results.json" '"petsc_options"'
     ;;
   unwritable_on_two_ranks)

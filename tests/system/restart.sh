@@ -37,8 +37,13 @@ options=(--quiet --no-pictures --set 'steps.vertical and side.increments=400')
 interrupted frame "$deck" "${options[@]}"
 # A path followed by its length goes on from its last point, critical points and all.
 interrupted lee "$SOURCE/inputs/lee_frame.yaml" --quiet --no-pictures --set steps.path.arc_length.largest_step=0.1 --set steps.path.arc_length.max_points=10000
-points() { sed -n '/"critical_points"/,/\]/p' "$1/results.json"; }
-[ "$(points "$WORK/lee")" = "$(points "$WORK/lee_resumed")" ] || fail "the resumed path has other critical points"
+points() { sed -n '/"critical_points"/,/\]/p' "$1/results.json" | grep -E '"(kind|lambda|stage)"' | tr -d ' ,"'; }
+# Load factors to 1e-8: what two ranks sum up differs in the last digits from run to run.
+paste -d: <(points "$WORK/lee") <(points "$WORK/lee_resumed") | awk -F: '
+  $1 != $3 { exit worst = 1 }
+  $1 == "lambda" { ++n; d = $2 - $4; if (d < 0) d = -d; if (d > 1e-8 * ($2 < 0 ? -$2 : $2)) worst = 1; next }
+  $2 != $4 { worst = 1 }
+  END { exit worst || n == 0 }' || fail "the resumed path has other critical points"
 says "$WORK/lee/results.json" '"limit"'
 
 expect 0 "$TAUTLINE" run "$deck" -o "$WORK/more" --from "$whole" "${options[@]}" --set steps.modal.modes=6
