@@ -1,6 +1,7 @@
 #include <tautline/la/session.hpp>
 
 #include <cstdlib>
+#include <string_view>
 
 #include <dmumps_c.h>
 #include <fmt/format.h>
@@ -32,10 +33,23 @@ PetscErrorCode quiet(MPI_Comm, int, const char*, const char*, PetscErrorCode cod
 
 }  // namespace
 
+bool takes_petsc_options() {
+  const char* asked = std::getenv("TAUTLINE_PETSC_OPTIONS");
+  return asked != nullptr && std::string_view(asked) == "1";
+}
+
 Session::Session() {
   setenv("OPENBLAS_NUM_THREADS", "1", 0);
+  char program[] = "tautline", skip[] = "-skip_petscrc";  // obeyed as an argument only
+  char* list[] = {program, skip, nullptr};
+  char** arguments = list;
+  int n_arguments = 1;
+  if (!takes_petsc_options()) {  // options can load libraries and change results
+    for (const char* name : {"PETSC_OPTIONS", "PETSC_OPTIONS_YAML"}) unsetenv(name);
+    n_arguments = 2;
+  }
   PetscOptionsSetValue(nullptr, "-no_signal_handler", nullptr);
-  check(SlepcInitialize(nullptr, nullptr, nullptr, nullptr), "SlepcInitialize");
+  check(SlepcInitialize(&n_arguments, &arguments, nullptr, nullptr), "SlepcInitialize");
   check(PetscPushErrorHandler(quiet, nullptr), "PetscPushErrorHandler");
 }
 

@@ -18,17 +18,6 @@ namespace {
 
 constexpr auto byte_order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
 
-/// A name that is safe in a file name on any system.
-std::string file_stem(const std::string& name) {
-  std::string stem;
-  for (const char c : name) {
-    const bool safe =
-        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '.';
-    stem += safe ? c : '_';
-  }
-  return stem.empty() ? "_" : stem;
-}
-
 void check_fields(const std::vector<Field>& fields, std::size_t count, const char* where,
                   const std::string& name) {
   for (const auto& field : fields) {
@@ -130,10 +119,8 @@ FieldSeries::FieldSeries(std::string directory, int rank, int size)
 void FieldSeries::write(const std::string& name, const FieldGrid& piece) {
   check_fields(piece.point_fields, piece.points.size(), "points", name);
   check_fields(piece.cell_fields, piece.lines.size() + piece.facets.size(), "cells", name);
-  const std::string stem = file_stem(name), folder = directory_ + "/fields";
+  const std::string stem = names_.next(name), folder = directory_ + "/fields";
   const std::string file = stem + (size_ == 1 ? ".vtu" : ".pvtu");
-  if (std::find(written_.begin(), written_.end(), file) != written_.end())
-    throw std::logic_error(fmt::format("the field series already holds \"{}\"", name));
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw LibraryError(fmt::format("cannot create the directory {}: {}", folder, error.message()));

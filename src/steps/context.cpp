@@ -37,6 +37,8 @@ Context::Context(const deck::Deck& the_deck, std::string directory, bool picture
       pictures_(pictures),
       root_(la::rank() == 0),
       fields_(directory_, la::rank(), la::size()) {
+  output::FileNames names;
+  for (const auto& step : deck.steps) step_file_[step.name] = names.of(step.name);
   if (deck.rod_umbrella() != nullptr) {
     umbrella = rod::make_umbrella(*deck.rod_umbrella());
     why_none_ = "the rod-umbrella has no cables yet: a rod_shaping step finds them";
@@ -103,7 +105,7 @@ template <class Picture>
 void Context::draw_any(const std::string& name, const std::string& caption, const Picture& picture) {
   if (!pictures_ || !root_) return;
   const Stopwatch watch(output_seconds_);
-  const std::string file = fmt::format("pictures/{}_{}.png", step_name, name);
+  const std::string file = fmt::format("pictures/{}_{}.png", step_file_.at(step_name), name);
   Picture sized = picture;
   const double scale = deck.output.picture_width / double{output::OutputOptions{}.picture_width};
   sized.width = static_cast<int>(std::lround(scale * picture.width));

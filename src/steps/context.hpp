@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -66,6 +67,8 @@ class Context {
 
   /// DIR/name
   std::string path(const std::string& name) const { return directory_ + "/" + name; }
+  /// DIR/<step><ending>, with a file name made of the name of the step in hand
+  std::string step_path(const std::string& ending) const { return path(step_file_.at(step_name) + ending); }
   /// Writes results.json (rank 0).
   void save();
   /// Draws DIR/pictures/<step>_<name>.png (rank 0) and notes it with its caption; a failure to draw is told
@@ -82,6 +85,7 @@ class Context {
   void draw_any(const std::string& name, const std::string& caption, const Picture& picture);
 
   std::string directory_, why_none_;
+  std::map<std::string, std::string> step_file_;  ///< by the step's name
   bool pictures_, root_;
   double output_seconds_ = 0;
   std::unique_ptr<assembly::System> system_;

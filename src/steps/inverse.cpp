@@ -150,12 +150,12 @@ void write_tables(const Context& context, const CableProblem& problem, const mod
     for (std::size_t c = 0; c < targets.size(); ++c) targets[c].push_back(row[c]);
   }
   la::on_root([&] {
-    output::write_columns(context.path(context.step_name + "_cables.csv"),
+    output::write_columns(context.step_path("_cables.csv"),
                           {"unknown", "cable", "start_length", "unstressed_length", "start_stiffness",
                            "axial_stiffness", "tension"},
                           {cables.begin(), cables.end()});
-    output::write_columns(context.path(context.step_name + "_targets.csv"),
-                          {"target", "node", "x", "y", "z", "miss"}, {targets.begin(), targets.end()});
+    output::write_columns(context.step_path("_targets.csv"), {"target", "node", "x", "y", "z", "miss"},
+                          {targets.begin(), targets.end()});
   });
 }
 

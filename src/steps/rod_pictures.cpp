@@ -175,7 +175,7 @@ void write_rod_tables(const Context& context, const rod::RodShape& shape, const 
     for (int k = 0; k <= shape.rod.links(); ++k) number.push_back(k);
     const auto& root = shape.rod.root;
     output::write_columns(
-        context.path(context.step_name + "_nodes.csv"),
+        context.step_path("_nodes.csv"),
         {"node", "x", "y", "theta", "reaction", "strain", "stiffness", "moment", "moment_of_links",
          "node_error", "miss_x", "miss_y"},
         {number, from_root(root.x, shape.x), from_root(root.y, shape.y), from_root(root.angle, shape.angle),
@@ -184,7 +184,7 @@ void write_rod_tables(const Context& context, const rod::RodShape& shape, const 
          List(shape.moment_of_links.begin(), shape.moment_of_links.end()), from_root(0, report.node_error),
          from_root(0, report.miss_x), from_root(0, report.miss_y)});
     output::write_columns(
-        context.path(context.step_name + "_rod.csv"), {"s", "x", "y", "theta", "moment", "deviation"},
+        context.step_path("_rod.csv"), {"s", "x", "y", "theta", "moment", "deviation"},
         {along(shape, [](const auto& p) { return p.s; }), along(shape, [](const auto& p) { return p.x; }),
          along(shape, [](const auto& p) { return p.y; }), along(shape, [](const auto& p) { return p.angle; }),
          along(shape, [](const auto& p) { return p.moment; }), deviations(*context.umbrella, shape)});

@@ -62,6 +62,7 @@ Json start_results(const deck::Deck& deck) {
                         {"slepc", versions.slepc},
                         {"mumps", versions.mumps},
                         {"ranks", la::size()}};
+  if (la::takes_petsc_options()) results["program"]["petsc_options"] = "taken from files and the environment";
   results["deck"] = {
       {"path", deck.path}, {"sha256", deck.sha256}, {"title", deck.title}, {"parameters", deck.parameters}};
   results["status"] = "interrupted";
@@ -173,6 +174,9 @@ ExitCode run(const deck::Deck& deck, const RunSettings& settings, Progress& prog
   Context context(deck, settings.directory, settings.pictures && deck.output.pictures, progress);
   la::on_root([&] { output::prepare_directory(settings.directory); });
   context.results = start_results(deck);
+  if (la::takes_petsc_options())
+    progress.say(
+        "TAUTLINE_PETSC_OPTIONS=1: PETSc's options come from .petscrc files and PETSC_OPTIONS as well");
   context.note_model();
   ExitCode code = ExitCode::done;
   std::string status = "done";

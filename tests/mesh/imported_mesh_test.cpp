@@ -135,6 +135,34 @@ TEST(ImportedMesh, WithoutANamedGroupIsRefused) {
   EXPECT_TRUE(mentions(message, "named physical group"));
 }
 
+/// A script that leaves a file when gmsh runs it.
+std::string script_that_makes(const std::string& path) {
+  return "SystemCall \"touch " + path + "\";\nPoint(1) = {0, 0, 0, 1};\n";
+}
+
+TEST(ImportedMesh, OfAScriptIsRefusedAndTheScriptNotRun) {
+  const std::string mark =
+      (std::filesystem::temp_directory_path() / ("ran_" + std::to_string(getpid()))).string();
+  for (const std::string before : {"", "// $MeshFormat\n", " $MeshFormat\n", "$Comments\n$EndComments\n"}) {
+    const TemporaryFile file(before + script_that_makes(mark));
+    const auto message = message_of<ModelError>([&] { import_gmsh(file.path()); });
+    EXPECT_TRUE(mentions(message, "is not a gmsh mesh"));
+    EXPECT_FALSE(std::filesystem::exists(mark));
+  }
+  std::filesystem::remove(mark);
+}
+
+TEST(ImportedMesh, RunsNoScriptThatLiesBesideTheFile) {
+  const std::string mark =
+      (std::filesystem::temp_directory_path() / ("ran_" + std::to_string(getpid()))).string();
+  const TemporaryFile file(msh2(one_surface, "3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n", "1\n1 2 2 7 1 1 2 3\n"));
+  std::ofstream(file.path() + ".opt") << script_that_makes(mark);
+  EXPECT_EQ(import_gmsh(file.path()).nodes.size(), 3u);
+  EXPECT_FALSE(std::filesystem::exists(mark));
+  std::filesystem::remove(file.path() + ".opt");
+  std::filesystem::remove(mark);
+}
+
 TEST(ImportedMesh, OfAFileThatGmshCannotParseIsALibraryError) {
   const TemporaryFile file("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\nthis is no number\n$EndNodes\n");
   const auto message = message_of<LibraryError>([&] { import_gmsh(file.path()); });

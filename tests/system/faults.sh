@@ -100,6 +100,25 @@ case $1 in
     run 5 "$SOURCE/inputs/frame.yaml"
     says "$WORK/err" "/proc/tautline_results"
     ;;
+  step_names)   # stay inside the output directory, and one file name each
+    sed "s|name: exact_b|name: ../../escaped|" "$SOURCE/inputs/rod_umbrella_m4_l5.yaml" >"$WORK/deck.yaml"
+    out=$WORK/a/b/results
+    run 0 "$WORK/deck.yaml"
+    [ -z "$(find "$WORK" -name '*escaped*' -not -path "$out/*")" ] || fail "files outside the output directory"
+    [ -n "$(find "$out" -name '*escaped*.csv')" ] || fail "the tables of the step are missing"
+    out=$WORK/results
+    run 0 "$here/decks/two_steps.yaml"
+    has "$out"/fields/{a_b,a_b_2}.vtu
+    ;;
+  petsc_options)   # of files in the current directory and of the environment are taken only when asked for
+    cd "$WORK"
+    echo '-options_left' >.petscrc
+    PETSC_OPTIONS=-help expect 0 "$TAUTLINE" run "$SOURCE/inputs/frame.yaml" -o "$out" --quiet --no-pictures
+    grep -qi 'option' "$WORK/out" "$WORK/err" && fail "options were taken"
+    TAUTLINE_PETSC_OPTIONS=1 expect 0 "$TAUTLINE" run "$SOURCE/inputs/frame.yaml" -o "$out" --quiet --no-pictures
+    says "$WORK/out" '[Oo]ption'
+    says "$out/results.json" '"petsc_options"'
+    ;;
   unwritable_on_two_ranks)
     touch "$WORK/results"
     expect 5 timeout 60 "${@:2}" "$TAUTLINE" run "$SOURCE/inputs/frame.yaml" -o "$WORK/results" --quiet --no-pictures

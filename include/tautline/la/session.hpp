@@ -9,6 +9,10 @@
 
 namespace tautline::la {
 
+/// Whether PETSc and SLEPc may read options from files (.petscrc) and from PETSC_OPTIONS: only where
+/// TAUTLINE_PETSC_OPTIONS=1 is in the environment.
+bool takes_petsc_options();
+
 /// Lives as long as anything of la is used; made once, in main.
 class Session {
  public:

@@ -9,6 +9,7 @@
 
 #include <tautline/core/types.hpp>
 #include <tautline/model/facet.hpp>
+#include <tautline/output/file_names.hpp>
 
 namespace tautline::output {
 
@@ -38,14 +39,14 @@ class FieldSeries {
   FieldSeries(std::string directory, int rank, int size);
   /// Collective without communication: every rank writes its piece; rank 0 also the .pvtu and the updated
   /// .pvd. All ranks must give the same arrays in the same order.
-  /// @param name unique, used in file names (other characters than letters, digits, - and . become _), e.g.
-  /// "03_tuning"
+  /// @param name made a file name by FileNames, e.g. "03_tuning"
   /// @throws LibraryError naming the file that could not be written
   void write(const std::string& name, const FieldGrid& piece);
 
  private:
   std::string directory_;
   int rank_, size_;
+  FileNames names_;
   std::vector<std::string> written_;
 };
 

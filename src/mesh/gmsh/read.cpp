@@ -1,8 +1,13 @@
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmsh.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <exception>
 #include <stdexcept>
+#include <string_view>
 #include <unordered_map>
 
 #include "mesh/gmsh/plugin.hpp"
@@ -133,9 +138,33 @@ ImportedMesh compact(const Points& positions, std::map<std::string, CellGroup> g
   return mesh;
 }
 
+/// A file under a name without suffix and without neighbours. gmsh chooses its reader by the suffix, and runs
+/// as a script what lies beside a file as <name>.opt.
+class NamelessFile {
+ public:
+  explicit NamelessFile(const std::string& path) : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (descriptor_ < 0) throw std::runtime_error(std::strerror(errno));
+    std::string begins(opening.size(), ' ');
+    const auto n = ::pread(descriptor_, begins.data(), begins.size(), 0);
+    if (n != static_cast<ssize_t>(begins.size()) || begins != opening) {
+      ::close(descriptor_);
+      throw std::runtime_error(fmt::format("it does not begin with {}", opening));
+    }
+  }
+  ~NamelessFile() { ::close(descriptor_); }
+  NamelessFile(const NamelessFile&) = delete;
+  NamelessFile& operator=(const NamelessFile&) = delete;
+  std::string name() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+
+ private:
+  static constexpr std::string_view opening = "$MeshFormat";
+  int descriptor_;
+};
+
 ImportedMesh read(const std::string& path) {
+  const NamelessFile file(path);
   const Session session;
-  gmsh::open(path);
+  gmsh::open(file.name());
   const Nodes nodes = read_nodes();
   return compact(nodes.positions, read_groups(nodes));
 }
