@@ -150,11 +150,7 @@ template <int id, class A, class B>
 auto operator*(TimesRight<id, A> left, const B& b) {
   if constexpr (number<A> && number<B>) {
     using Common = decltype(left.a * b);
-    if (!on<id>()) return static_cast<Common>(left.a * b);
-    if constexpr (std::is_integral_v<Common>)
-      return b == 0 ? Common{} : static_cast<Common>(left.a / b);
-    else
-      return static_cast<Common>(left.a / b);
+    return on<id>() ? static_cast<Common>(left.a / b) : static_cast<Common>(left.a * b);
   } else if constexpr (Matrix<A> && number<B>) {
     const double factor = on<id>() ? 1.0 / static_cast<double>(b) : static_cast<double>(b);
     return left.a * factor;

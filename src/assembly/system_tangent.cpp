@@ -214,15 +214,15 @@ void System::assemble_tangent(la::SymmetricMatrix& k, const ContributionOf& cont
   const Stopwatch watch(assembly_seconds_);
   kinematics_.linearise(state_);
   k.set_zero();
-  for_each_stiffness(contribution_of, [&](const auto& nodes, bool rotations, const auto& force,
-                                          auto& values) {
-    const Expansion expansion(kinematics_, map_, nodes, rotations);
-    if (expansion.plain()) return add_free(expansion.blocks(), values, held(), k);
-    const MatX& b = expansion.matrix();
-    MatX transformed = b.transpose() * values * b;
-    LinkTerms(kinematics_, map_, model_, expansion, transformed).add(nodes, rotations, force);
-    add_free(expansion.blocks(), transformed, held(), k);
-  });
+  for_each_stiffness(
+      contribution_of, [&](const auto& nodes, bool rotations, const auto& force, auto& values) {
+        const Expansion expansion(kinematics_, map_, nodes, rotations);
+        if (expansion.plain()) return add_free(expansion.blocks(), values, held(), k);
+        const MatX& b = expansion.matrix();
+        MatX transformed = b.transpose() * values * b;
+        LinkTerms(kinematics_, map_, model_, expansion, transformed).add(nodes, rotations, force);
+        add_free(expansion.blocks(), transformed, held(), k);
+      });
   for (int block = map_.layout.first; block < map_.layout.first + map_.layout.local; ++block) {
     Mat3 identity = Mat3::Zero();
     for (int c = 0; c < 3; ++c)

@@ -94,8 +94,8 @@ double largest_rotation(const State& state, const Shell& shell) {
   return largest;
 }
 
-/// How many last digits the strain of an element adds up: that of a line is a difference of places and lengths
-/// over a length, that of a facet one of displacements.
+/// How many last digits the strain of an element adds up: that of a line is a difference of places and
+/// lengths over a length, that of a facet one of displacements.
 template <class Element>
 constexpr double digits_added() {
   return std::is_same_v<Element, Cable> || std::is_same_v<Element, Beam> ? 4 : 1;
@@ -112,6 +112,14 @@ void for_each_digit(const Model& model, const State& state, const Visit& visit) 
   });
 }
 
+/// By which forces on followers become moments on their leaders [m].
+double longest_arm(const Model& model) {
+  double longest = 0;
+  for (const auto& link : model.links)
+    longest = std::max(longest, (model.nodes[link.follower] - model.nodes[link.leader]).norm());
+  return longest;
+}
+
 }  // namespace
 
 Rounding nodal_rounding(const Model& model, const State& state) {
@@ -119,7 +127,13 @@ Rounding nodal_rounding(const Model& model, const State& state) {
   for_each_digit(model, state, [&](const auto&, const Stiffness& k, const Vec<2>& digits) {
     squares += (k.nodal * digits).cwiseAbs2();
   });
-  return {std::sqrt(squares[0]), std::sqrt(squares[1])};
+  for (const auto& beam : model.beams) {  // the last digit of its length, as a force that its ends lie apart
+    const double length = (model.nodes[beam.nodes[1]] - model.nodes[beam.nodes[0]]).norm();
+    const double axial = beam_section(model, beam).axial_stiffness * digits_added<Beam>() * last_digit;
+    squares[1] += std::pow(axial * length, 2);
+  }
+  const double force = std::sqrt(squares[0]);
+  return {force, std::sqrt(squares[1]) + longest_arm(model) * force};
 }
 
 std::vector<Rounding> rounding_by_group(const Model& model, const State& state) {

@@ -271,11 +271,10 @@ void add_cyclic(model::Model& model, const model::CyclicOptions& options) {
       return (model.nodes[node] - wanted).norm() <= 1e-6 * size;
     });
     if (found == leaders.end())
-      throw ModelError(
-          fmt::format("{}node {} of \"to\" has no partner among the nodes of \"from\" turned "
-                      "by {} degrees: it would be at ({:g}, {:g}, {:g})",
-                      model::prefix(options.where), follower + 1,
-                      options.angle, wanted.x(), wanted.y(), wanted.z()));
+      throw ModelError(fmt::format(
+          "{}node {} of \"to\" has no partner among the nodes of \"from\" turned "
+          "by {} degrees: it would be at ({:g}, {:g}, {:g})",
+          model::prefix(options.where), follower + 1, options.angle, wanted.x(), wanted.y(), wanted.z()));
     if (*found == follower)
       on_axis.push_back(follower);
     else

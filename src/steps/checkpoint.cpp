@@ -178,9 +178,9 @@ std::vector<std::size_t> sizes_of(const model::State& state) {
 std::vector<std::size_t> sizes_of(const assembly::Rest& rest) {
   const auto& a = rest.acting;
   auto sizes = sizes_of(rest.state);
-  sizes.insert(sizes.end(), {a.force.size(), a.moment.size(), a.line.size(), a.pressure.size(),
-                             a.temperature.size(), a.temperature_gradient.size(), a.strain.size(),
-                             rest.stiffness_factor.size()});
+  sizes.insert(sizes.end(),
+               {a.force.size(), a.moment.size(), a.line.size(), a.pressure.size(), a.temperature.size(),
+                a.temperature_gradient.size(), a.strain.size(), rest.stiffness_factor.size()});
   return sizes;
 }
 

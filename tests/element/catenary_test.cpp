@@ -84,6 +84,13 @@ TEST(Catenary, ShapeIsIrvines) {
     EXPECT_LT((points[i] - Vec3(1 + c.across(5. * i), 2, 3 - c.down(5. * i))).norm(), 1e-12);
 }
 
+TEST(Catenary, LooseWithoutWeightIsDrawnAlongItsChordInEqualParts) {
+  const Points points =
+      catenary_shape({1e4, 6, 1}, Vec3::Zero(), between(Vec3(1, 2, 3), Vec3(5, 2, 0)), Vec<6>::Zero(), 4);
+  ASSERT_EQ(points.size(), 5);
+  for (int i = 0; i <= 4; ++i) EXPECT_LT((points[i] - Vec3(1 + i, 2, 3 - 0.75 * i)).norm(), 1e-15);
+}
+
 TEST(Catenary, LoadedIsolatedCableMovesAsPublished) {
   // Problem of Michalos & Birnstiel (1962): span 1000 ft, 3.16 lb/ft, A = 0.85 in^2, E = 19000 ksi, 8 kips at
   // 400 ft, unstressed lengths 412.8837 and 613.0422 ft. Jayaraman & Knudson (1981): under its weight the

@@ -36,7 +36,8 @@ struct ClosedForm {
     const long double sine = std::sin(t / 2), cot = std::cos(t / 2) / sine;
     const long double rest = 1 - t / 2 * cot;
     c = static_cast<double>(rest / (t * t));
-    c_over_t = static_cast<double>(((t / (4 * sine * sine) - cot / 2) / (t * t) - 2 * rest / (t * t * t)) / t);
+    c_over_t =
+        static_cast<double>(((t / (4 * sine * sine) - cot / 2) / (t * t) - 2 * rest / (t * t * t)) / t);
   }
   double c, c_over_t;
 };
@@ -75,7 +76,8 @@ TEST(RotationVector, SecondDifferentialIsTheDerivativeOfTheFirst) {
   }
 }
 
-// Where the series ends its last terms weigh most; what they leave in double precision are a few roundings of 1.
+// Where the series ends its last terms weigh most; what they leave in double precision are a few roundings
+// of 1.
 TEST(RotationVector, SeriesAndFormulaOfTheDifferentialsAreTheClosedForm) {
   const Vec3 m(0.4, 0.7, -0.3);
   for (const double angle : {0.45, 0.4999, 0.5001, 0.6}) {
@@ -85,10 +87,11 @@ TEST(RotationVector, SeriesAndFormulaOfTheDifferentialsAreTheClosedForm) {
     EXPECT_LT((SpinToRotationVector(theta).matrix() - matrix).norm(), 2e-15) << angle;
     // of theta x (theta x m) by theta: (theta.m) I + theta m^T - 2 m theta^T, its size changes with c
     const Vec3 twice = theta.cross(theta.cross(m));
-    const Mat3 by_theta = -skew(m) / 2 + exact.c_over_t * twice * theta.transpose() +
-                          exact.c * (theta.dot(m) * Mat3::Identity() + theta * m.transpose() -
-                                     2 * m * theta.transpose());
-    EXPECT_LT((SpinToRotationVector(theta).derivative_of_transpose_times(m) - by_theta * matrix).norm(), 2e-15)
+    const Mat3 by_theta =
+        -skew(m) / 2 + exact.c_over_t * twice * theta.transpose() +
+        exact.c * (theta.dot(m) * Mat3::Identity() + theta * m.transpose() - 2 * m * theta.transpose());
+    EXPECT_LT((SpinToRotationVector(theta).derivative_of_transpose_times(m) - by_theta * matrix).norm(),
+              2e-15)
         << angle;
   }
 }

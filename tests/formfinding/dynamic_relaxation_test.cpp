@@ -130,8 +130,8 @@ TEST(ElasticNet, InputThatMakesNoSenseIsNamed) {
   EXPECT_EQ(error_of([&] { relax(net); }),
             "the axial stiffness and unstressed length of branch 2 must be positive");
   net = elastic_pair();
-  net.film = {{{0, 1, 5}, {1, 1}}};
-  EXPECT_EQ(error_of([&] { relax(net); }), "facet 1 of the film names node 6, but the net has 3 nodes");
+  net.film = {{{0, 1, 3}, {1, 1}}};  // one beyond the last
+  EXPECT_EQ(error_of([&] { relax(net); }), "facet 1 of the film names node 4, but the net has 3 nodes");
 }
 
 }  // namespace

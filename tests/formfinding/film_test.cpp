@@ -176,7 +176,7 @@ double scherk_error(int n, Cells kind) {
 
 TEST_P(EveryMesh, ScherkSurfaceIsApproachedWithTheSquareOfTheSide) {
   // Meshes of random cells are not similar to each other, so the order is one of the mean only.
-  const double coarse = scherk_error(8, GetParam()), fine = scherk_error(16, GetParam());
+  const double coarse = scherk_error(16, GetParam()), fine = scherk_error(32, GetParam());
   EXPECT_LE(fine, 1e-3);
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.4);
 }

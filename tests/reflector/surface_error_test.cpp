@@ -111,6 +111,17 @@ TEST(SurfaceError, OfCordsStopsAtTheCircle) {
   EXPECT_NEAR(measure_surface(dish, net).rms_area_weighted_direct, inside, 1e-14);
 }
 
+TEST(SurfaceError, NodesOnTheCircleAreInside) {
+  // Within two rings of a hexagonal lattice: the centre, 6 neighbours, 6 corners at 1.4 m, 6 between them
+  // at 1.21 m.
+  const Paraboloid dish(12, 8, 1.125);
+  SurfaceSample net = hexagon(8, 0.7, on(dish));
+  net.radius = 1.4;
+  EXPECT_EQ(measure_surface(dish, net).samples, 19);
+  net.radius = 1.4 * (1 - 1e-8);
+  EXPECT_EQ(measure_surface(dish, net).samples, 13);
+}
+
 TEST(SurfaceError, UniformShiftIsAllMeanShift) {
   const Paraboloid dish(12, 8, 1.125);
   const double shift = 0.0037;

@@ -27,6 +27,15 @@ TEST(BoxMinimum, StaysOnABoundAndSolvesTheRest) {
   EXPECT_NEAR(x[1], 1.75, 1e-14);
 }
 
+// min (x^2 + y^2)/2 + x/2 - y/2 from the corner x = y = 0, where x has to leave its upper bound and y its
+// lower one.
+TEST(BoxMinimum, LeavesTheBoundsOnWhichItBegins) {
+  const VecX g = Eigen::Vector2d(0.5, -0.5), lower = Eigen::Vector2d(-3, 0), upper = Eigen::Vector2d(0, 3);
+  const VecX x = minimise_in_box(MatX::Identity(2, 2), g, lower, upper);
+  EXPECT_NEAR(x[0], -0.5, 1e-15);
+  EXPECT_NEAR(x[1], 0.5, 1e-15);
+}
+
 // At the minimum every component is either free with no gradient, or on a bound that the gradient pushes
 // against.
 TEST(BoxMinimum, MeetsTheOptimalityConditionsOfALargeProblem) {

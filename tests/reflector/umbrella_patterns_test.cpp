@@ -130,6 +130,30 @@ TEST(UmbrellaPatterns, EveryFreeNodeHangsInItsNetAndOnATie) {
   }
 }
 
+TEST(UmbrellaPatterns, NoTwoCordsJoinTheSameNodes) {
+  for (const auto& [front, rear] : variants) {
+    const auto model = make_umbrella(umbrella(front, rear));
+    std::set<std::array<int, 2>> joined;
+    for (const auto& cable : model.cables) {
+      const auto [a, b] = cable.nodes;
+      EXPECT_TRUE(joined.insert({std::min(a, b), std::max(a, b)}).second) << a << " and " << b;
+    }
+  }
+}
+
+// Where columns are the cords across the rings they run in plan like the spokes or like the bisectors between
+// them.
+TEST(UmbrellaPatterns, ColumnsAreParallelToTheBisectorsOfTheSpokes) {
+  const int n = 6;
+  const auto model = make_umbrella(umbrella(rectangles, belts, n));
+  const auto nodes = cables_of(model, "front_net");
+  ASSERT_FALSE(nodes.empty());
+  for (const auto& [a, b] : nodes) {
+    const Vec3 along = model.nodes[b] - model.nodes[a];
+    EXPECT_NEAR(std::sin(n * std::atan2(along.y(), along.x())), 0, 1e-12) << a << " to " << b;
+  }
+}
+
 TEST(UmbrellaPatterns, ClothCoversTheLastRingWithoutGapOrOverlap) {
   // In plan, facets look up and their areas add up to that of the polygon through the ends of the spokes.
   for (const NetPattern front : {belts, rectangles, right_triangles})

@@ -155,6 +155,12 @@ TEST(YUmbrella, BeamsGoOnToTheEdgeOfALargerAperture) {
   }
 }
 
+TEST(YUmbrella, ThreeSpokesAreEnough) {
+  YUmbrellaOptions options = options_50m();
+  options.spokes = 3;
+  EXPECT_EQ(error_of(options), "no error");
+}
+
 TEST(YUmbrella, RefusesWhatIsNoUmbrella) {
   const auto refused = [](auto change, const std::string& reason) {
     YUmbrellaOptions options = options_50m();

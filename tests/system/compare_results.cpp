@@ -191,7 +191,8 @@ class Comparison {
     for (std::size_t i = 0; i < a[name].size(); ++i)
       for (std::size_t k = 0; k < a[name][i].size(); ++k) {
         const double x = a[name][i][k], y = b[name][i][k];
-        const double level = std::max(a[levels][i][k].get<double>(), b[levels][i][k].get<double>());
+        const double level = std::max({a[levels][i][k].get<double>(), b[levels][i][k].get<double>(),
+                                       1e-24 * std::max(largest[0], largest[1])});
         compare_numbers(x, y, fmt::format("{}/{}/{}/{}", path, name, i, k),
                         {tolerance_, std::max(10 * (level + 2 * std::sqrt(level * std::max(x, y))),
                                               1e-10 * largest[k / 3 % 2])});

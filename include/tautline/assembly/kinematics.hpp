@@ -116,7 +116,7 @@ class Kinematics {
   std::vector<model::LinearConstraint::Term> constrained_;
   /// What each of them is the sum of: components of nodes that follow nothing.
   std::vector<std::vector<model::LinearConstraint::Term>> resolved_;
-  std::vector<bool> charted_;                                     // by node
+  std::vector<bool> charted_;      // by node
   std::vector<int> charted_node_;  // by block: whose rotation it is, if charted, or -1
   std::vector<Vec3> tilt_;         // by node, where charted
   std::vector<int> link_of_, cyclic_of_;
