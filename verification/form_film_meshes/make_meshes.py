@@ -4,7 +4,9 @@
 python3 make_meshes.py
 """
 import math
+import pathlib
 import subprocess
+import tempfile
 
 C = 0.848337938094979  # waist of the catenoid
 
@@ -18,10 +20,11 @@ Line(1) = {{1, 2}}; Line(2) = {{2, 3}}; Line(3) = {{3, 4}}; Line(4) = {{4, 1}};
 Curve Loop(1) = {{1, 2, 3, 4}}; Plane Surface(1) = {{1}};
 Mesh.Algorithm = 6; Mesh.RecombineAll = {1 if quadrilaterals else 0};
 """
-    with open("/tmp/flat.geo", "w") as file:
-        file.write(text)
-    subprocess.run(["gmsh", "-2", "-format", "msh22", "-v", "1", "/tmp/flat.geo", "-o", "/tmp/flat.msh"], check=True)
-    lines = iter(open("/tmp/flat.msh").read().split("\n"))
+    with tempfile.TemporaryDirectory() as folder:
+        drawing, mesh = pathlib.Path(folder, "flat.geo"), pathlib.Path(folder, "flat.msh")
+        drawing.write_text(text)
+        subprocess.run(["gmsh", "-2", "-format", "msh22", "-v", "1", drawing, "-o", mesh], check=True)
+        lines = iter(mesh.read_text().split("\n"))
     nodes, facets, edges = [], [], []
     for line in lines:
         if line == "$Nodes":
