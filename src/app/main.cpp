@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <new>
+#include <stdexcept>
 #include <thread>
 
 #include <CLI/CLI.hpp>
@@ -81,6 +83,13 @@ int report_failure(const std::string& message, ExitCode code) {
   return static_cast<int>(code);
 }
 
+int out_of_memory() {
+  return report_failure(
+      "error: there is not enough memory. Ask for fewer elements (subdivisions, rings, modes), or give the "
+      "process more (ulimit -v, a larger machine, more ranks)",
+      ExitCode::library_failed);
+}
+
 int guarded(const std::function<int()>& action) {
   try {
     return action();
@@ -90,6 +99,10 @@ int guarded(const std::function<int()>& action) {
     return report_failure(fmt::format("error: {}", error.what()), ExitCode::impossible_model);
   } catch (const LibraryError& error) {
     return report_failure(fmt::format("error: {}", error.what()), ExitCode::library_failed);
+  } catch (const std::bad_alloc&) {
+    return out_of_memory();
+  } catch (const std::length_error&) {
+    return out_of_memory();
   } catch (const std::exception& error) {
     return report_failure(
         fmt::format("internal error: {}\nThis is a bug, please report it with the deck.", error.what()),
@@ -149,9 +162,15 @@ void add_run_options(CLI::App& command, Request& request) {
   command.add_flag("--no-pictures", request.no_pictures, "draw no PNG pictures");
 }
 
-}  // namespace
+/// Words that reach nobody (a full disk behind stdout) are a failure, too.
+int told(int result) {
+  std::cout.flush();
+  if (std::cout || result != 0) return result;
+  return report_failure("error: what there is to say cannot be written to the standard output",
+                        ExitCode::library_failed);
+}
 
-int main(int argc, char** argv) {
+int command(int argc, char** argv) {
   CLI::App app{"tautline: form-finding and nonlinear analysis of cable-shell structures"};
   app.set_version_flag("--version", std::string("tautline ") + tautline::steps::version());
   app.require_subcommand(1);
@@ -243,4 +262,10 @@ int main(int argc, char** argv) {
     return code == 0 ? 0 : static_cast<int>(ExitCode::bad_deck);
   }
   return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return told(command(argc, argv));
 }

@@ -1,5 +1,7 @@
 #include <tautline/core/error.hpp>
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <tautline/core/text.hpp>
@@ -19,16 +21,34 @@ std::string summary(const std::vector<Diagnostic>& diagnostics) {
   return text;
 }
 
+/// Byte of the character number `index`, from 0; the end of the text beyond it.
+std::size_t byte_of(const std::string& text, int index) {
+  std::size_t byte = 0;
+  for (; byte < text.size(); ++byte)
+    if ((static_cast<unsigned char>(text[byte]) & 0xC0U) != 0x80U && index-- == 0) break;
+  return byte;
+}
+
+/// The line with a mark below it; of a long one what stands about the mark.
+std::string marked_line(const Diagnostic& d) {
+  constexpr int widest = 160, before = 60;
+  const int column = std::max(0, d.where.column - 1);
+  const int width = characters(d.source_line, d.source_line.size());
+  const int from = width <= widest ? 0 : std::max(0, column - before);
+  const std::size_t begin = byte_of(d.source_line, from), end = byte_of(d.source_line, from + widest);
+  const std::string left = from > 0 ? "..." : "", right = end < d.source_line.size() ? "..." : "";
+  const int at = column - from + static_cast<int>(left.size());
+  return fmt::format("{:>5} | {}{}{}\n{:>5} | {}^{}\n", std::to_string(d.where.line), left,
+                     d.source_line.substr(begin, end - begin), right, "",
+                     std::string(static_cast<std::size_t>(at), ' '),
+                     std::string(static_cast<std::size_t>(std::clamp(d.length - 1, 0, widest - 1)), '~'));
+}
+
 }  // namespace
 
 std::string to_string(const Diagnostic& d) {
   std::string text = fmt::format("{}: error: {}\n", place(d.where), d.message);
-  if (!d.source_line.empty()) {
-    const std::string number = std::to_string(d.where.line);
-    text += fmt::format("{:>5} | {}\n", number, d.source_line);
-    text += fmt::format("{:>5} | {}^{}\n", "", std::string(std::max(0, d.where.column - 1), ' '),
-                        std::string(std::max(0, d.length - 1), '~'));
-  }
+  if (!d.source_line.empty()) text += marked_line(d);
   std::string detail = d.context;
   if (!d.expectation.empty()) detail += (detail.empty() ? "" : "; ") + d.expectation;
   if (!detail.empty()) text += "  " + detail + "\n";

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -108,6 +109,9 @@ class Parser {
   Parser(const std::string& text, const Variables& variables) : text_(text), variables_(variables) {}
 
   Node parse() {
+    if (text_.size() > longest)
+      throw std::invalid_argument(
+          fmt::format("a formula of {} characters; at most {} are read", text_.size(), longest));
     Node node = sum();
     if (peek() != '\0') fail(fmt::format("\"{}\" does not fit here", text_[at_]));
     return node;
@@ -134,7 +138,9 @@ class Parser {
       if (!minus && peek() != '+') return left;
       ++at_;
       Node right = product();
-      left = [left, right, minus](const Jet2* x) { return left(x) + (minus ? -right(x) : right(x)); };
+      left = [left = std::move(left), right = std::move(right), minus](const Jet2* x) {
+        return left(x) + (minus ? -right(x) : right(x));
+      };
     }
   }
 
@@ -145,17 +151,26 @@ class Parser {
       if (!over && peek() != '*') return left;
       ++at_;
       Node right = signed_power();
-      left = [left, right, over](const Jet2* x) {
+      left = [left = std::move(left), right = std::move(right), over](const Jet2* x) {
         return left(x) * (over ? power(right(x), {-1, 0, 0}) : right(x));
       };
     }
   }
 
+  /// All nesting comes through here.
   Node signed_power() {
-    if (take('+')) return signed_power();
-    if (!take('-')) return raised();
-    Node node = signed_power();
-    return [node](const Jet2* x) { return -node(x); };
+    if (++depth_ > deepest)
+      fail(fmt::format("more than {} parentheses, signs or powers in each other", deepest));
+    Node node;
+    if (take('+')) {
+      node = signed_power();
+    } else if (take('-')) {
+      node = [inner = signed_power()](const Jet2* x) { return -inner(x); };
+    } else {
+      node = raised();
+    }
+    --depth_;
+    return node;
   }
 
   Node raised() {
@@ -179,9 +194,12 @@ class Parser {
   }
 
   Node number() {
-    std::size_t length = 0;
-    const double value = std::stod(text_.substr(at_), &length);
-    at_ += length;
+    double value = 0;
+    const char* const end = text_.data() + text_.size();
+    const auto [rest, error] = std::from_chars(text_.data() + at_, end, value);
+    if (error == std::errc::result_out_of_range) fail("a number too large or too small for a computer");
+    if (error != std::errc()) fail("\".\" does not fit here");
+    at_ = static_cast<std::size_t>(rest - text_.data());
     return [value](const Jet2*) { return Jet2{value, 0, 0}; };
   }
 
@@ -203,9 +221,13 @@ class Parser {
     return [inner, function = known->second](const Jet2* x) { return function(inner(x)); };
   }
 
+  static constexpr std::size_t longest = 10'000;  // characters
+  static constexpr int deepest = 100;
+
   const std::string& text_;
   const Variables& variables_;
   std::size_t at_ = 0;
+  int depth_ = 0;
 };
 
 }  // namespace

@@ -32,6 +32,19 @@ std::size_t levenshtein(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
+/// Number of continuation bytes after a leading byte, or -1.
+int continuation_bytes(unsigned char lead) {
+  if (lead < 0x80U) return 0;
+  if (lead >= 0xC2U && lead < 0xE0U) return 1;
+  if (lead >= 0xE0U && lead < 0xF0U) return 2;
+  if (lead >= 0xF0U && lead < 0xF5U) return 3;
+  return -1;
+}
+
+bool is_control(unsigned char c) {
+  return (c < 0x20U && c != '\n' && c != '\r' && c != '\t') || c == 0x7FU;
+}
+
 }  // namespace
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
@@ -40,6 +53,8 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
   std::size_t best = 2 + word.size() / 5;
   std::string result;
   for (const auto& candidate : candidates) {
+    const std::size_t longer = std::max(candidate.size(), wanted.size());
+    if (longer - std::min(candidate.size(), wanted.size()) >= best) continue;
     const std::size_t distance = levenshtein(wanted, normalised(candidate));
     if (distance < best) {
       best = distance;
@@ -59,11 +74,33 @@ std::string join(const std::vector<std::string>& words, std::string_view separat
   return result;
 }
 
+std::string shortened(const std::string& text, std::size_t most) {
+  if (text.size() <= most) return text;
+  std::size_t end = most;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  return text.substr(0, end) + "...";
+}
+
 int characters(std::string_view text, std::size_t bytes) {
   int count = 0;
   for (std::size_t i = 0; i < std::min(bytes, text.size()); ++i)
     if ((static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U) ++count;
   return count;
+}
+
+std::size_t first_bad_byte(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto lead = static_cast<unsigned char>(text[i]);
+    const int more = continuation_bytes(lead);
+    if (more < 0 || is_control(lead)) return i;
+    if (lead == 0xC2U && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0U)
+      return i;  // control characters of ISO 6429
+    for (int k = 1; k <= more; ++k) {
+      if (i + k >= text.size() || (static_cast<unsigned char>(text[i + k]) & 0xC0U) != 0x80U) return i;
+    }
+    i += static_cast<std::size_t>(more);
+  }
+  return std::string_view::npos;
 }
 
 }  // namespace tautline

@@ -34,6 +34,7 @@ void add_triangular_net_keys(Builder& b) {
   using Options = reflector::TriangularNetOptions;
   b.key("rings", &Options::rings)
       .at_least(1)
+      .at_most(1000)
       .says("Rings of triangles in the net; the rim has 6 x rings nodes.");
   b.key("gap", &Options::gap).in("m").at_least(0).says("Extra distance between front and rear net.");
   b.key("rim_height", &Options::rim_height)

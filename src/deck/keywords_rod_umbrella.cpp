@@ -157,11 +157,13 @@ Block rod_umbrella_block() {
       "space to the steps after it; the load `turn` takes the `roots` to the stop.");
   b.key("rods", &Options::rods)
       .at_least(3)
+      .at_most(10000)
       .required()
       .also_called({"n"})
       .says("Number of rods, evenly spread.");
   b.key("links", &Options::links)
       .at_least(1)
+      .at_most(10000)
       .required()
       .also_called({"m"})
       .says("Links of each rod; the end of each is a node with a cable.");

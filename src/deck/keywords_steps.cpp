@@ -40,8 +40,8 @@ const BlockSet& tube_blocks() {
         .refers("beam group")
         .required()
         .says("Groups of beams with a section of kind tube or tapered_tube.");
-    b.key("around", &Options::around).at_least(20).says("Shell elements round each tube.");
-    b.key("along", &Options::along).at_least(1).says("Shell elements along each beam.");
+    b.key("around", &Options::around).at_least(20).at_most(10000).says("Shell elements round each tube.");
+    b.key("along", &Options::along).at_least(1).at_most(10000).says("Shell elements along each beam.");
     return BlockSet{"steps.mesh.tubes_as_shells", "Thin tubes as shells.", {b.take()}, {}};
   }();
   return set;

@@ -121,6 +121,7 @@ template <class Builder>
 void add_net_keys(Builder& b) {
   b.key("rings", &Options::rings)
       .at_least(3)
+      .at_most(1000)
       .says("Rings of the net; ring k of triangles has k parts between two spokes.");
   b.choice("front_pattern", &Options::front_pattern, front_patterns())
       .says(

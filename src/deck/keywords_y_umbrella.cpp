@@ -45,6 +45,7 @@ template <class Builder>
 void add_spoke_keys(Builder& b) {
   b.key("spokes", &Options::spokes)
       .at_least(3)
+      .at_most(1000)
       .says("Number of spokes, evenly spread, the first towards +x.");
   b.key("hub_radius", &Options::hub_radius)
       .in("m")
@@ -78,13 +79,18 @@ void add_net_keys(Builder& b) {
   b.key("surface_height", &Options::surface_height)
       .in("m")
       .says("The surface is raised so far; the plane of the stems, z = 0, mirrors front and rear.");
-  b.key("rings", &Options::rings).at_least(1).says("Rings of tangential cords between hub and power ring.");
+  b.key("rings", &Options::rings)
+      .at_least(1)
+      .at_most(1000)
+      .says("Rings of tangential cords between hub and power ring.");
   b.key("parts", &Options::parts)
       .at_least(2)
+      .at_most(1000)
       .says(
           "Parts of power ring and outer cord between two spokes; a shaping beam between each two of them.");
   b.key("beam_parts", &Options::beam_parts)
       .at_least(2)
+      .at_most(1000)
       .says("Straight parts of a shaping beam, with their ends on the surface; even.");
   b.key("ring_sag", &Options::ring_sag)
       .at_least(0)

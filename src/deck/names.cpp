@@ -247,13 +247,17 @@ std::string Names::remedy(const std::string& kind, const std::string& name) cons
 }
 
 void check_references(const Names& names, Reader& reader) {
+  constexpr int most_remedies =
+      200;  // of all that are shown; to look for more takes long in a deck of many names
+  int n_unknown = 0;
   for (const auto& reference : reader.references()) {
     if (names.is_known(reference.kind, reference.name)) continue;
-    const auto known = names.known(reference.kind);
+    const auto& known = names.known(reference.kind);
     std::string expectation = fmt::format("the deck defines no {}s", reference.kind);
     if (!known.empty())
       expectation = fmt::format("expected one of: {}{}", join(known), names.home(reference.kind));
-    std::string suggestion = names.remedy(reference.kind, reference.name);
+    std::string suggestion =
+        ++n_unknown <= most_remedies ? names.remedy(reference.kind, reference.name) : std::string();
     if (!reference.note.empty()) suggestion += (suggestion.empty() ? "" : "; ") + reference.note;
     std::string message = fmt::format("unknown {} \"{}\"", reference.kind, reference.name);
     const auto member = names.member(reference.name);

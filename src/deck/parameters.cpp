@@ -42,9 +42,11 @@ class Substitution {
       const Node* value = parameters_ != nullptr ? parameters_->find(name) : nullptr;
       if (value == nullptr || !value->is_scalar()) return unknown(node, name, value != nullptr);
       result += node.text.substr(from, begin - from) + value->text;
+      bytes_ += value->text.size();
+      if (bytes_ > most_bytes) return fail(node, "parameters make the deck too large", {}, {});
       from = end + 1;
-      node.note += fmt::format("{}${{{}}} is {} ({})", node.note.empty() ? "" : "; ", name, value->text,
-                               origin(*value));
+      node.note += fmt::format("{}${{{}}} is {} ({})", node.note.empty() ? "" : "; ", name,
+                               shortened(value->text, 60), origin(*value));
     }
     if (from == 0) return;
     node.text = result + node.text.substr(from);
@@ -74,9 +76,12 @@ class Substitution {
     node.kind = Node::Kind::broken;
   }
 
+  static constexpr std::size_t most_bytes = 50'000'000;
+
   const Node* parameters_;
   const Source& source_;
   Complaints& complaints_;
+  std::size_t bytes_ = 0;  ///< of all values put in
   std::vector<std::string> names_;
   std::vector<std::string> path_;
 };

@@ -10,19 +10,7 @@ namespace tautline::deck {
 namespace {
 
 constexpr std::size_t most_shown = 20;
-
-/// Number of continuation bytes after a leading byte, or -1.
-int continuation_bytes(unsigned char lead) {
-  if (lead < 0x80U) return 0;
-  if (lead >= 0xC2U && lead < 0xE0U) return 1;
-  if (lead >= 0xE0U && lead < 0xF0U) return 2;
-  if (lead >= 0xF0U && lead < 0xF5U) return 3;
-  return -1;
-}
-
-bool is_control(unsigned char c) {
-  return (c < 0x20U && c != '\n' && c != '\r' && c != '\t') || c == 0x7FU;
-}
+constexpr std::size_t most_kept = 50'000'000;  // bytes
 
 }  // namespace
 
@@ -71,7 +59,13 @@ Diagnostic Source::diagnostic(const Place& place, std::string message) const {
 }
 
 void Complaints::add(Diagnostic diagnostic) {
-  if (seen_.insert(to_string(diagnostic)).second) list_.push_back(std::move(diagnostic));
+  if (bytes_ > most_kept) {
+    ++n_more_;
+    return;
+  }
+  std::string text = to_string(diagnostic);
+  bytes_ += text.size() + diagnostic.source_line.size();
+  if (seen_.insert(std::move(text)).second) list_.push_back(std::move(diagnostic));
 }
 
 void Complaints::throw_if_any() {
@@ -83,24 +77,12 @@ void Complaints::throw_if_any() {
   if (list_.size() > most_shown) {
     Diagnostic rest;
     rest.where.file = list_.back().where.file;
-    rest.message = fmt::format("{} errors in all; the first {} are shown", list_.size(), most_shown);
+    rest.message =
+        fmt::format("{} errors in all; the first {} are shown", list_.size() + n_more_, most_shown);
     list_.resize(most_shown);
     list_.push_back(std::move(rest));
   }
   throw DeckError(list_);
-}
-
-std::size_t first_bad_byte(std::string_view text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    const int more = continuation_bytes(lead);
-    if (more < 0 || is_control(lead)) return i;
-    for (int k = 1; k <= more; ++k) {
-      if (i + k >= text.size() || (static_cast<unsigned char>(text[i + k]) & 0xC0U) != 0x80U) return i;
-    }
-    i += static_cast<std::size_t>(more);
-  }
-  return std::string_view::npos;
 }
 
 }  // namespace tautline::deck

@@ -41,9 +41,8 @@ class Complaints {
  private:
   std::vector<Diagnostic> list_;
   std::set<std::string> seen_;  ///< texts of the list
+  std::size_t bytes_ = 0;       ///< of the list
+  std::size_t n_more_ = 0;      ///< that are only counted
 };
-
-/// Byte offset of the first byte that is no text in UTF-8 (control characters included), or npos.
-std::size_t first_bad_byte(std::string_view text);
 
 }  // namespace tautline::deck

@@ -7,6 +7,7 @@
 #include <deck/yaml_tree.hpp>
 #include <map>
 #include <sstream>
+#include <tautline/core/text.hpp>
 
 namespace tautline::deck {
 
@@ -65,6 +66,8 @@ class TreeBuilder : public YAML::EventHandler {
                 const std::string& value) override {
     reject_tag(mark, tag);
     const YAML::Mark begin = after_anchor(mark);
+    if (first_bad_byte(value) != std::string::npos)
+      reject(place(begin, 1), "this text holds a control character, written as an escape");
     Node node;
     node.kind = Node::Kind::scalar;
     node.text = value;

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <tautline/core/error.hpp>
 #include <tautline/core/plugin.hpp>
+#include <tautline/core/text.hpp>
 #include <tautline/mesh/imported_mesh.hpp>
 
 #include "mesh/gmsh/plugin.hpp"
@@ -41,6 +42,10 @@ ImportedMesh import_gmsh(const std::string& path) {
   if (outcome == Outcome::unreadable)
     throw LibraryError(fmt::format("gmsh cannot read the mesh {}: {}", path, reason));
   if (outcome == Outcome::unsuitable) throw ModelError(fmt::format("the mesh {} {}", path, reason));
+  for (const auto& [name, group] : mesh.groups)
+    if (first_bad_byte(name) != std::string::npos)
+      throw ModelError(
+          fmt::format("the mesh {} has a physical group whose name is no plain text in UTF-8", path));
   return mesh;
 }
 

@@ -51,6 +51,7 @@ class Subdivider {
 
   Model run() {
     find_facet_sides();
+    check_size();
     split_lines(old_.cables, new_.cables, cable_children_);
     split_lines(old_.beams, new_.beams, beam_children_);
     find_spans();
@@ -90,6 +91,29 @@ class Subdivider {
     };
     add_sides(old_.membranes);
     add_sides(old_.shells);
+  }
+
+  /// Far more elements than any machine solves are a slip, told before memory runs out.
+  void check_size() const {
+    constexpr double most = 5e7;
+    double count = 0;
+    const auto add_lines = [&](const auto& lines) {
+      for (const auto& line : lines)
+        count += parts_of(edge_of(line.nodes[0], line.nodes[1]), old_.groups[line.group]);
+    };
+    const auto add_facets = [&](const auto& facets) {
+      for (const auto& facet : facets)
+        count +=
+            stays_whole(facet.group) ? 1 : static_cast<double>(options_.subdivisions) * options_.subdivisions;
+    };
+    add_lines(old_.cables);
+    add_lines(old_.beams);
+    add_facets(old_.membranes);
+    add_facets(old_.shells);
+    if (count > most)
+      throw ModelError(fmt::format(
+          "these subdivisions would make {:.3g} elements; at most {:.0e} are made: ask for fewer parts",
+          count, most));
   }
 
   bool stays_whole(int group) const {

@@ -70,6 +70,10 @@ Json read_results(const std::string& path) {
   }
 }
 
+void write_text(const std::string& path, const std::string& text) {
+  detail::write_file(path, text);
+}
+
 void prepare_directory(const std::string& directory) {
   std::error_code error;
   if (std::filesystem::exists(directory, error) && !std::filesystem::is_directory(directory, error))

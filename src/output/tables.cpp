@@ -1,6 +1,7 @@
 #include <tautline/output/tables.hpp>
 
 #include <cmath>
+#include <cstring>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -30,17 +31,9 @@ class Table {
   std::string text_;
 };
 
-/// A name as a csv cell: quoted where it holds a comma, a quote or a line end (RFC 4180).
-std::string cell(const std::string& name) {
-  if (name.find_first_of(",\"\n\r") == std::string::npos) return name;
-  std::string quoted = "\"";
-  for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::vector<std::string> group_cells(const model::Model& model) {
   std::vector<std::string> cells;
-  for (const auto& group : model.groups) cells.push_back(cell(group.name));
+  for (const auto& group : model.groups) cells.push_back(csv_cell(group.name));
   return cells;
 }
 
@@ -60,7 +53,7 @@ void label_by_elements(std::vector<std::string>& labels, const Elements& element
 std::vector<std::string> node_labels(const model::Model& model) {
   std::vector<std::string> labels(model.nodes.size());
   for (const auto& [name, selection] : model.selections)
-    for (const int node : selection.nodes) label(labels, node, cell(name));
+    for (const int node : selection.nodes) label(labels, node, csv_cell(name));
   const auto groups = group_cells(model);
   model::for_each_kind(model, [&](const auto& elements) { label_by_elements(labels, elements, groups); });
   return labels;
@@ -174,6 +167,16 @@ void write_shells(const std::string& path, const model::Model& model, const mode
               f.shear[1]);
   }
   table.write(path);
+}
+
+std::string csv_cell(const std::string& text) {
+  const bool is_number = !text.empty() && text.find_first_not_of("0123456789.eE+-") == std::string::npos &&
+                         text.find_first_of("0123456789") != std::string::npos;
+  const bool is_formula = !text.empty() && std::strchr("=+-@\t\r", text.front()) != nullptr && !is_number;
+  if (!is_formula && text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = is_formula ? "\"'" : "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
 }
 
 void write_columns(const std::string& path, const std::vector<std::string>& header,

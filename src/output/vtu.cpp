@@ -72,6 +72,7 @@ void write_vtu(const std::string& path, const FieldGrid& grid) {
   fill(data, grid);
   const QuietVtk quiet;
   const std::string temporary = path + ".tmp";
+  std::remove(temporary.c_str());  // a link would be followed
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
   writer->SetFileName(temporary.c_str());
   writer->SetInputData(data);

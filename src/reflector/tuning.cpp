@@ -151,10 +151,12 @@ VecX least_change(QuadraticForm in_lengths, const MatX& tension, double weight) 
   return -in_lengths.h.ldlt().solve(in_lengths.g);
 }
 
-/// To three digits: a weight that rounding does not touch.
-double rounded(double value) {
-  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
-  return value > 0 ? unit * std::round(value / unit) : value;
+/// To three digits in units of `scale`: a weight that rounding, which the inverse of the influence enlarges,
+/// does not touch, nor the units of the deck.
+double rounded(double value, double scale) {
+  if (!(value > 0) || !(scale > 0)) return value;
+  const double unit = scale * std::pow(10.0, std::floor(std::log10(value / scale)) - 2);
+  return unit * std::round(value / unit);
 }
 
 }  // namespace
@@ -169,12 +171,14 @@ VecX sensitivity_change(const Paraboloid& surface, const SurfaceSample& sample, 
   const TensionInverse inverse = invert(influence.tension);
   QuadraticForm in_tensions = about_the_mean(form, j * inverse.to_lengths);
   // Ties the measured surface hardly feels keep their tension, and tension does not run up for little gain.
-  const double mean_influence = rounded(in_tensions.h.diagonal().mean());
+  const QuadraticForm in_lengths = about_the_mean(form, j);
+  const double mean_influence =
+      rounded(in_tensions.h.diagonal().mean(), in_lengths.h.trace() / influence.tension.squaredNorm());
   const double weight = options.regularisation * mean_influence;
   const VecX lower = (options.tension_min - influence.present_tension.array()).matrix();
   const VecX upper = (options.tension_max - influence.present_tension.array()).matrix();
   const bool regular = inverse.unreachable.size() == 0;
-  VecX change = least_change(about_the_mean(form, j), influence.tension, weight);
+  VecX change = least_change(in_lengths, influence.tension, weight);
   if (const VecX t = influence.tension * change;
       !regular || !t.allFinite() || (t.array() < lower.array()).any() || (t.array() > upper.array()).any()) {
     in_tensions.h.diagonal().array() += weight;
@@ -240,7 +244,7 @@ void settle_in_box(const MatX& h, const VecX& g, const VecX& lower, const VecX& 
 VecX minimise_in_box(const MatX& h, const VecX& g, const VecX& lower, const VecX& upper) {
   VecX x = VecX::Zero(g.size()).cwiseMax(lower).cwiseMin(upper);
   const auto value = [&](const VecX& at) { return 0.5 * at.dot(h * at) + g.dot(at); };
-  const double tolerance = 1e-12 * (1 + g.cwiseAbs().maxCoeff());
+  const double tolerance = 1e-12 * g.cwiseAbs().maxCoeff();
   for (int iteration = 0; iteration < 200; ++iteration) {
     const VecX gradient = h * x + g;
     std::vector<int> free;

@@ -204,6 +204,7 @@ void Checkpoints::write(const Checkpoint& checkpoint, const std::string& name) {
   la::on_root([&] {
     fs::create_directories(directory_);
     const fs::path path = fs::path(directory_) / name, fresh = path.string() + ".tmp";
+    fs::remove(fresh);  // a link would be followed
     {
       std::string content;
       Json::to_cbor(to_json(checkpoint, deck_), content);

@@ -33,10 +33,10 @@ Context::Context(const deck::Deck& the_deck, std::string directory, bool picture
     : deck(the_deck),
       progress(the_progress),
       checkpoints(the_deck, directory + "/checkpoints"),
-      directory_(std::move(directory)),
+      files_(directory),
       pictures_(pictures),
       root_(la::rank() == 0),
-      fields_(directory_, la::rank(), la::size()) {
+      fields_(directory, la::rank(), la::size()) {
   for (const auto& step : deck.steps) step_files_.of(step.name);  // the same ones wherever a run is taken up
   if (deck.rod_umbrella() != nullptr) {
     umbrella = rod::make_umbrella(*deck.rod_umbrella());
@@ -94,6 +94,11 @@ void Context::note_model() {
   const auto& model = has_system() ? system_->model() : structure;
   results["model"] = model_json(model, has_system() ? system_->n_dofs() : 0);
   results["model"]["mass_by_group"] = model::mass_by_group(model);
+}
+
+void Context::open_directory(bool goes_on) {
+  files_.open(goes_on);
+  for (const char* name : {"fields.pvd", "report.html"}) files_.path(name);  // written by others
 }
 
 void Context::save() {

@@ -18,6 +18,7 @@
 #include <tautline/output/fields.hpp>
 #include <tautline/output/file_names.hpp>
 #include <tautline/output/pictures.hpp>
+#include <tautline/output/run_directory.hpp>
 #include <tautline/reflector/paraboloid.hpp>
 #include <tautline/reflector/surface_error.hpp>
 #include <tautline/rod/umbrella.hpp>
@@ -65,8 +66,10 @@ class Context {
   /// Writes the present model's numbers into results.
   void note_model();
 
-  /// DIR/name
-  std::string path(const std::string& name) const { return directory_ + "/" + name; }
+  /// Takes the directory of results; on rank 0. @param goes_on the run takes up the one that wrote there
+  void open_directory(bool goes_on);
+  /// DIR/name of a file to be written
+  std::string path(const std::string& name) { return files_.path(name); }
   /// DIR/<step><ending>, with a file name made of the name of the step in hand
   std::string step_path(const std::string& ending) { return path(step_files_.of(step_name) + ending); }
   /// Writes results.json (rank 0).
@@ -87,7 +90,8 @@ class Context {
   template <class Picture>
   void draw_any(const std::string& name, const std::string& caption, const Picture& picture);
 
-  std::string directory_, why_none_;
+  std::string why_none_;
+  output::RunDirectory files_;
   output::FileNames step_files_;
   bool pictures_, root_;
   double output_seconds_ = 0;

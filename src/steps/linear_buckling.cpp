@@ -105,11 +105,13 @@ void find_along(Context& context, const std::vector<std::string>& loads, int mod
   system.begin_stage(boundary_with(context, loads, sense));
   found.failure = why_unstable(system, workspace);
   if (!found.failure.empty()) return;
+  const bool changes = system.changes_at_rest();
   BucklingCourse course(system, workspace);
-  if (!course.stresses()) {
-    found.failure = "the loads named stress nothing, so that nothing can buckle under them";
-    return;
-  }
+  if (!changes || !course.stresses())
+    throw ModelError(fmt::format(
+        "linear buckling: the loads that grow ({}) stress nothing, so that nothing can buckle under them. "
+        "Name loads that press the structure: loads: [...]",
+        loads.empty() ? "none" : fmt::format("{}", fmt::join(loads, ", "))));
   std::vector<double> known;  // on the other side
   for (const double factor : found.factors) known.push_back(std::abs(factor));
   std::sort(known.begin(), known.end());

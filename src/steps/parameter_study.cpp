@@ -208,7 +208,7 @@ void report(ParameterStudy study, Json rows, const RunSettings& settings, Progre
                                                              {"over", over},
                                                              {"quantities", quantities},
                                                              {"rows", rows}});
-  std::ofstream(settings.directory + "/study.csv") << study_csv(study, rows);
+  output::write_text(settings.directory + "/study.csv", study_csv(study, rows));
   if (settings.pictures) draw_study(study, rows, settings.directory, progress);
   std::cout << study_text(study, rows) << std::flush;
 }

@@ -1,6 +1,7 @@
 #include <tautline/steps/run.hpp>
 
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 
 #include <fmt/format.h>
@@ -195,7 +196,9 @@ ExitCode run(const deck::Deck& deck, const RunSettings& settings, Progress& prog
   const auto start = Clock::now();
   const auto checkpoint = settings.from.empty() ? std::nullopt : find_checkpoint(deck, settings.from);
   Context context(deck, settings.directory, settings.pictures && deck.output.pictures, progress);
-  la::on_root([&] { output::prepare_directory(settings.directory); });
+  std::error_code error;  // e.g. that there is no such directory yet
+  const bool goes_on = checkpoint && std::filesystem::equivalent(settings.from, settings.directory, error);
+  la::on_root([&] { context.open_directory(goes_on); });
   watch_for_interrupt();
   context.results = start_results(deck);
   if (la::takes_petsc_options())

@@ -1,7 +1,6 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <fmt/os.h>
 
 #include <tautline/core/error.hpp>
 #include <tautline/la/session.hpp>
@@ -55,17 +54,18 @@ Json extrapolate(const Json& study, const std::string& measure) {
 }
 
 void write_csv(const std::string& path, const Json& rows) {
-  auto file = fmt::output_file(path);
-  file.print(
+  std::string text =
       "subdivisions,dofs,rms,rms_direct,rms_best_fit,rms_area_weighted,rms_nodes,newton_iterations,"
-      "factorisations,solver_seconds,wall_seconds\n");
+      "factorisations,solver_seconds,wall_seconds\n";
   for (const auto& row : rows) {
-    file.print("{},{}", row["subdivisions"].get<int>(), row["dofs"].get<int>());
-    for (const char* measure : measures) file.print(",{:.17g}", row["surface"][measure].get<double>());
-    file.print(",{},{},{:.6g},{:.6g}\n", row["newton_iterations"].get<int>(),
-               row["factorisations"].get<int>(), row["solver_seconds"].get<double>(),
-               row["wall_seconds"].get<double>());
+    text += fmt::format("{},{}", row["subdivisions"].get<int>(), row["dofs"].get<int>());
+    for (const char* measure : measures)
+      text += fmt::format(",{:.17g}", row["surface"][measure].get<double>());
+    text += fmt::format(",{},{},{:.6g},{:.6g}\n", row["newton_iterations"].get<int>(),
+                        row["factorisations"].get<int>(), row["solver_seconds"].get<double>(),
+                        row["wall_seconds"].get<double>());
   }
+  output::write_text(path, text);
 }
 
 output::Chart chart_of(const Json& rows) {

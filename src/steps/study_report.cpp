@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <tautline/output/pictures.hpp>
+#include <tautline/output/tables.hpp>
 
 namespace tautline::steps {
 
@@ -105,16 +106,17 @@ std::string study_text(const ParameterStudy& study, const Json& rows) {
 
 std::string study_csv(const ParameterStudy& study, const Json& rows) {
   std::string text;
-  for (const auto& range : study.over) text += range.name + ",";
-  for (const auto& quantity : study.quantities) text += quantity.label + ",";
+  for (const auto& range : study.over) text += output::csv_cell(range.name) + ",";
+  for (const auto& quantity : study.quantities) text += output::csv_cell(quantity.label) + ",";
   text += "status,directory\n";
   for (const auto& row : rows) {
-    for (const auto& range : study.over) text += parameter(row, range.name) + ",";
+    for (const auto& range : study.over) text += output::csv_cell(parameter(row, range.name)) + ",";
     for (const auto& quantity : study.quantities) {
       const Json value = value_of(row, quantity);
       text += (value.is_number() ? fmt::format("{:.17g}", value.get<double>()) : "") + ",";
     }
-    text += fmt::format("{},{}\n", row["status"].get<std::string>(), row["directory"].get<std::string>());
+    text += fmt::format("{},{}\n", row["status"].get<std::string>(),
+                        output::csv_cell(row["directory"].get<std::string>()));
   }
   return text;
 }

@@ -83,6 +83,30 @@ TEST(Expression, TellsWhereAFormulaIsWrong) {
   EXPECT_EQ(fault("(X + 1"), "a closing parenthesis is missing (character 7)");
   EXPECT_EQ(fault("sin X"), "sin needs its argument in parentheses (character 5)");
   EXPECT_EQ(fault(""), "a number, X or a function is missing (character 1)");
+  EXPECT_EQ(fault("2*1e999"), "a number too large or too small for a computer (character 3)");
+  EXPECT_EQ(fault("X + ."), "\".\" does not fit here (character 5)");
+}
+
+TEST(Expression, ReadsNestingUpToALimit) {
+  const auto nested = [](int depth) {
+    const auto n = static_cast<std::size_t>(depth);
+    return Expression(std::string(n, '(') + "X" + std::string(n, ')'))(3).value;
+  };
+  EXPECT_EQ(nested(99), 3);
+  EXPECT_THROW(nested(101), std::invalid_argument);
+  EXPECT_EQ(Expression(std::string(98, '-') + "X")(3).value, 3);
+  for (const char* part : {"-", "sin(", "2^"}) {
+    std::string text;
+    for (int i = 0; i < 3000; ++i) text += part;
+    EXPECT_THROW(Expression(text + "X"), std::invalid_argument) << part;
+  }
+}
+
+TEST(Expression, AddsManyTerms) {
+  std::string text = "X";
+  for (int i = 0; i < 4000; ++i) text += "+1";
+  EXPECT_EQ(Expression(text)(3).value, 4003);
+  EXPECT_THROW(Expression(std::string(20'000, ' ') + "X"), std::invalid_argument);
 }
 
 TEST(SpaceFormula, EvaluatesAtAPlace) {

@@ -80,5 +80,56 @@ TEST(BadDecks, DeepNestingIsStopped) {
   EXPECT_THROW(parse_deck("title: " + std::string(100000, '['), "deep.yaml"), DeckError);
 }
 
+/// What a small deck is told.
+std::string told(const std::string& text) {
+  try {
+    parse_deck(text, "deck.yaml");
+    return {};
+  } catch (const DeckError& error) {
+    return error.what();
+  }
+}
+
+/// Two nodes and a cable, held at the groups that are named.
+std::string two_nodes(const std::string& parameters, const std::string& held, const std::string& cable) {
+  return "units: SI\nparameters: {p: \"" + parameters +
+         "\"}\nmodel:\n  nodes: {a: [0, 0, 0], b: [1, 0, 0]}\n  elements: {c: [" + cable +
+         "]}\nsections: {c: {kind: cable, axial_stiffness: 1e5, mass_per_length: 1}}\n"
+         "groups: {c: {section: c, tension: 5}}\nsupports: [{on: [" +
+         held + "], fix: pinned}]\nsteps: [{kind: equilibrium}]\n";
+}
+
+std::string repeated(const std::string& part, int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += part;
+  return text;
+}
+
+TEST(HugeDecks, AreToldOfParametersThatMultiply) {
+  const std::string text =
+      told(two_nodes(std::string(1'000'000, 'y'), repeated("\"${p}\", ", 2000), "[a, b]"));
+  EXPECT_NE(text.find("parameters make the deck too large"), std::string::npos) << text.substr(0, 400);
+  EXPECT_LT(text.size(), 20'000U) << "values and lines are shown in part";
+}
+
+TEST(HugeDecks, OfManyUnknownNamesShowTheFirst) {
+  std::string cables;
+  for (int i = 0; i < 5000; ++i) cables += "[node_" + std::to_string(i) + ", a], ";
+  const std::string text = told(two_nodes("1", "c", cables));
+  EXPECT_NE(text.find("5000 errors in all; the first 20 are shown"), std::string::npos)
+      << text.substr(0, 400);
+  EXPECT_LT(text.size(), 20'000U);
+}
+
+TEST(HugeDecks, ShowWhatStandsAboutAFaultOfALongLine) {
+  const std::string text =
+      told(two_nodes("1", repeated("c, ", 3000) + "x_y_z" + repeated(", c", 3000), "[a, b]"));
+  EXPECT_NE(text.find("...c, c, c, c"), std::string::npos) << text.substr(0, 1000);
+  const auto mark = text.find('^'), line = text.rfind(" | ", text.find("x_y_z, c")),
+             below = text.rfind(" | ", mark);
+  ASSERT_NE(mark, std::string::npos);
+  EXPECT_EQ(text.find("x_y_z, c") - line, mark - below) << "the mark stands below the name";
+}
+
 }  // namespace
 }  // namespace tautline::deck

@@ -143,6 +143,13 @@ TEST(Subdivision, LeavesCablesThatAreNoFacetSideWhole) {
   EXPECT_EQ(mesh.cables[ties[0]].nodes, (std::array<int, 2>{0, 3}));
 }
 
+TEST(Subdivision, RefusesMoreElementsThanAnyMachineSolves) {
+  EXPECT_THROW(subdivide(two_facets(), parts(10'000)), ModelError);  // 2 facets of 1e8
+  auto options = parts(1);
+  options.group_subdivisions["mast"] = 1'000'000'000;
+  EXPECT_THROW(subdivide(two_facets(), options), ModelError);
+}
+
 TEST(Subdivision, SplitsBeamsOnFacetSidesAndElsewhere) {
   const auto structure = two_facets(), mesh = subdivide(structure, parts(3));
   EXPECT_EQ(mesh.select("strut").beams.size(), 3u);

@@ -59,6 +59,12 @@ case $1 in
     says "$WORK/err" 'mechanism|can move|singular|loose|connected'
     run 3 "$here/decks/loose_part.yaml"
     ;;
+  buckling_without_loads)   # nothing grows, so that nothing can buckle
+    sed -n '1,/^steps:/p' "$SOURCE/inputs/strut.yaml" >"$WORK/deck.yaml"
+    echo '  - {kind: buckling, loads: [], modes: 1}' >>"$WORK/deck.yaml"
+    run 3 "$WORK/deck.yaml"
+    says "$WORK/err" 'stress nothing'
+    ;;
   pressed_ties)   # the rim is so low that the net would hang above it: ties would have to push
     run 3 "$SOURCE/inputs/dish_4m.yaml" --set reflector.rim_height=0.25
     says "$WORK/err" 'tie'
@@ -99,6 +105,32 @@ case $1 in
     out=/proc/tautline_results                      # nobody can make a directory there, not even root
     run 5 "$SOURCE/inputs/frame.yaml"
     says "$WORK/err" "/proc/tautline_results"
+    ;;
+  full_disk)   # behind stdout, and behind the results
+    expect 5 bash -c '"$0" run "$1" -o "$2" --no-pictures >/dev/full' "$TAUTLINE" "$SOURCE/inputs/frame.yaml" "$out"
+    says "$WORK/err" 'standard output'
+    expect 5 bash -c '"$0" explain >/dev/full' "$TAUTLINE"
+    ;;
+  not_enough_memory)   # is told as that
+    expect 5 bash -c 'ulimit -v 2500000; "$0" check "$1" --set reflector.rings=1000' "$TAUTLINE" "$SOURCE/inputs/perimeter_truss_12m.yaml"
+    says "$WORK/err" 'not enough memory'
+    ;;
+  old_results)   # do not stay beside new ones
+    run 0 "$SOURCE/inputs/dish_4m.yaml"
+    has "$out"/membranes.csv
+    echo mine >"$out/mine.csv"
+    run 0 "$SOURCE/inputs/frame.yaml"
+    [ ! -e "$out/membranes.csv" ] || fail "membranes.csv of another run stands beside the new results"
+    has "$out"/{beams.csv,mine.csv}
+    ;;
+  two_runs)   # in one directory
+    "$TAUTLINE" run "$SOURCE/inputs/perimeter_truss_12m.yaml" -o "$out" --quiet --no-pictures >"$WORK/first" 2>&1 &
+    for _ in $(seq 300); do [ -s "$out/results.json" ] && break; sleep 0.1; done
+    run 5 "$SOURCE/inputs/frame.yaml"
+    says "$WORK/err" 'another run \(process [0-9]+ on '
+    kill -9 %1
+    wait || true
+    run 0 "$SOURCE/inputs/frame.yaml"   # the lock of a process that is no more
     ;;
   step_names)   # stay inside the output directory, and one file name each
     sed "s|name: exact_b|name: ../../escaped|" "$SOURCE/inputs/rod_umbrella_m4_l5.yaml" >"$WORK/deck.yaml"

@@ -34,7 +34,8 @@ Scales::Scales(const Outcome& outcome) : size_(outcome.size), stiffness_(outcome
   }
   auto& force = largest_["N"];
   force = std::max(force, 1e-8 * stiffness_);
-  if (size_ == 0) size_ = largest_["length m"];  // of a reflector the longest cable
+  force = std::max(force, 0.1 * size_ * largest_["N/m"]);  // of a facet at its nodes, where it holds itself
+  if (size_ == 0) size_ = largest_["length m"];            // of a reflector the longest cable
 }
 
 double Scales::of(const Quantity& a, const Quantity& b) const {
@@ -75,6 +76,13 @@ std::vector<Difference> compare(const Outcome& expected, const Outcome& found, d
   std::stable_sort(list.begin(), list.end(),
                    [](const auto& a, const auto& b) { return a.measure > b.measure; });
   return list;
+}
+
+bool all_taut(const Outcome& outcome) {
+  for (const auto& [key, q] : outcome.numbers)
+    if (key.rfind("cable ", 0) == 0 && key.find(" tension") != std::string::npos && q.value[0] <= 0)
+      return false;
+  return true;
 }
 
 Difference difference(const std::string& what, double expected, double found, double allowed) {

@@ -32,6 +32,9 @@ class Scales {
 /// on one side counts as infinitely different
 std::vector<Difference> compare(const Outcome& expected, const Outcome& found, double tolerance);
 
+/// Whether every cable of the last state is in tension.
+bool all_taut(const Outcome& outcome);
+
 /// One difference that a relation measures by itself.
 Difference difference(const std::string& what, double expected, double found, double allowed);
 

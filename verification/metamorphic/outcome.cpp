@@ -75,6 +75,7 @@ class Reading {
     const Json results = output::read_results(path("results.json"));
     int index = 0;
     for (const auto& step : results["steps"]) read_step(step, fmt::format("step {} ", ++index));
+    for (const auto& warning : results["warnings"]) outcome_.warnings.insert(warning["code"]);
     if (results.contains("model") && results["model"]["mass"].is_number())
       scalar("mass", results["model"]["mass"], "kg");
     if (!fs::exists(path("nodes.csv"))) return outcome_;
@@ -127,6 +128,7 @@ class Reading {
       scalar(prefix + "negative pivots", step["stages"].back()["negative_pivots"], "count");
     list(step, prefix, "frequencies", "Hz");
     list(step, prefix, "factors", "factor");
+    if (step.contains("slack_at_first_factor")) outcome_.warnings.insert("slack_at_first_factor");
     list(step, prefix, "critical_loads", "critical N");
     for (const char* key : {"critical_lambda", "bifurcation_lambda", "limit_lambda"})
       if (step.contains(key)) scalar(prefix + key, step[key], "factor");
@@ -317,14 +319,14 @@ std::string end_of(const std::exception& error) {
 }
 
 Outcome Outcome::only(const std::string& prefix) const {
-  Outcome result{end, message, {}, size, stiffness};
+  Outcome result{end, message, {}, warnings, size, stiffness};
   for (const auto& [key, value] : numbers)
     if (key.rfind(prefix, 0) == 0) result.numbers[key] = value;
   return result;
 }
 
 Outcome Outcome::without(const std::string& prefix) const {
-  Outcome result{end, message, {}, size, stiffness};
+  Outcome result{end, message, {}, warnings, size, stiffness};
   for (const auto& [key, value] : numbers)
     if (key.rfind(prefix, 0) != 0) result.numbers[key] = value;
   return result;

@@ -4,6 +4,7 @@
 /// measured in.
 
 #include <map>
+#include <set>
 #include <string>
 
 #include "deck.hpp"
@@ -28,8 +29,9 @@ struct Outcome {
   std::string end;      ///< "done", "not converged", "bad deck", "impossible model", "library failed", "bug"
   std::string message;  ///< why it is not done
   std::map<std::string, Quantity> numbers;
-  double size = 0;       ///< of the structure as drawn [m]
-  double stiffness = 0;  ///< about the largest axial stiffness, whose rounding is in all forces [N]
+  std::set<std::string> warnings;  ///< codes; "slack_at_first_factor" where linear buckling tells it
+  double size = 0;                 ///< of the structure as drawn [m]
+  double stiffness = 0;            ///< about the largest axial stiffness, whose rounding is in all forces [N]
 
   bool done() const { return end == "done"; }
   const Vec3& at(const std::string& key) const { return numbers.at(key).value; }

@@ -92,57 +92,6 @@ std::optional<Trial> frequency_and_probe(const Json& deck, Random&) {
   return trial;
 }
 
-/// A straight column of unequal beams in any direction, pressed at its end.
-Json column(Random& random) {
-  Builder b;
-  b.deck["materials"]["metal"] = {{"young_modulus", random.magnitude(1e9, 2e11)},
-                                  {"poisson_ratio", 0.3},
-                                  {"density", 2000.0},
-                                  {"thermal_expansion", 1e-5}};
-  const double modulus = b.deck["materials"]["metal"]["young_modulus"], length = random.magnitude(0.5, 20);
-  const Vec3 way = random.direction();
-  const double h = length / random.between(60, 150), w = h * random.between(1.1, 2);
-  b.section("column", {{"kind", "rectangle"}, {"material", "metal"}, {"width", w}, {"height", h}});
-  Vec3 normal;
-  do normal = random.direction();
-  while (std::abs(normal.dot(way)) > 0.8);
-  b.group("column", {{"orientation", to_json(normal)}});
-  const int n = random.whole(4, 7);
-  std::vector<double> at{0};
-  for (int k = 0; k < n; ++k) at.push_back(at.back() + random.between(0.7, 1.3));
-  std::vector<std::string> names;
-  for (const double s : at) names.push_back(b.node(s / at.back() * length * way));
-  for (int k = 0; k < n; ++k)
-    b.element("column", {names[static_cast<std::size_t>(k)], names[static_cast<std::size_t>(k) + 1]});
-  b.nodes("foot", {names.front()});
-  b.nodes("head", {names.back()});
-  b.nodes("middle", {names[static_cast<std::size_t>(n) / 2]});
-  const double euler = 9.87 * modulus * w * std::pow(h, 3) / 12 / (length * length);
-  double critical = euler;
-  switch (random.whole(0, 2)) {
-    case 0:  // free at the head
-      b.support("foot", "all");
-      critical /= 4;
-      break;
-    case 1:  // hinged at both ends, which do not twist
-      b.support("foot", {"x", "y", "z", "rx"}, {{"x_axis", to_json(way)}, {"y_axis", to_json(normal)}});
-      b.support("head", {"y", "z"}, {{"x_axis", to_json(way)}, {"y_axis", to_json(normal)}});
-      break;
-    default:
-      b.support("foot", "all");
-      b.support("head", {"y", "z"}, {{"x_axis", to_json(way)}, {"y_axis", to_json(normal)}});
-      critical *= 2;
-  }
-  b.load("press", {{"on", {"head"}}, {"force", to_json(-critical * random.between(0.5, 2) * way)}});
-  if (random.chance(0.5)) {
-    b.load("dead",
-           {{"on", {"head"}}, {"force", to_json(0.3 * critical * (random.chance(0.5) ? 1 : -1) * way)}});
-    b.step({{"kind", "equilibrium"}, {"loads", {"dead"}}});
-  }
-  b.step({{"kind", "buckling"}, {"loads", {"press"}}, {"modes", 1}, {"sign", "positive"}});
-  return b.deck;
-}
-
 double find(const Outcome& o, const std::string& part) {
   for (const auto& [key, q] : o.numbers)
     if (key.find(part) != std::string::npos) return q.value[0];
@@ -170,30 +119,57 @@ std::optional<Trial> buckling_and_path(const Json& deck, Random&) {
 /// With a small lateral force the rule of collapse stops short of the bifurcation, by what a bow grows 1.5
 /// times in a step of 5 %: (1 - 0.85) = 1.5 (1 - 0.9); two steps and the growth of the first mode alone are
 /// allowed for.
-std::optional<Trial> collapse_rule(const Json& deck, Random& random) {
-  if (deck["steps"].empty()) return std::nullopt;
-  Json ruled = deck;
-  auto& last = ruled["steps"].back();
-  if (last["kind"] != "buckling") return std::nullopt;
-  if (deck["loads"].empty() || deck["loads"][0]["name"] != "press" || !deck["groups"].contains("middle"))
-    return std::nullopt;
-  last = {{"kind", "collapse"}, {"loads", {"press"}}, {"monitor", {"middle"}}, {"disturbance", {"lateral"}}};
+Difference within_the_rule(double critical, double rule) {
+  return difference("the rule's factor", 0.875 * critical, rule, 0.125 * critical);
+}
+
+/// The step `collapse` under "press", watched in the middle, with a ten thousandth of the load to a side.
+void disturb(Json& deck, Random& random) {
+  deck["steps"].back() = {
+      {"kind", "collapse"}, {"loads", {"press"}}, {"monitor", {"middle"}}, {"disturbance", {"lateral"}}};
   const Vec3 force = to_vec3(deck["loads"][0]["force"]);
   Vec3 side = force.cross(random.direction());
   side *= 1e-4 * force.norm() / side.norm();
-  ruled["loads"].push_back({{"name", "lateral"}, {"on", {"middle"}}, {"force", to_json(side)}});
+  deck["loads"].push_back({{"name", "lateral"}, {"on", {"middle"}}, {"force", to_json(side)}});
+}
+
+bool is_pressed(const Json& deck, const std::string& last) {
+  return !deck["steps"].empty() && deck["steps"].back()["kind"] == last && !deck["loads"].empty() &&
+         deck["loads"][0]["name"] == "press" && deck["groups"].contains("middle");
+}
+
+std::optional<Trial> collapse_rule(const Json& deck, Random& random) {
+  if (!is_pressed(deck, "buckling")) return std::nullopt;
+  Json ruled = deck;
+  disturb(ruled, random);
   Trial trial;
   trial.jobs = {{deck}, {ruled}};
   trial.judge = [](const Outcomes& o) {
-    const double linear = find(o[0], "factors 1"), rule = find(o[1], "critical_lambda");
-    return std::vector<Difference>{difference("the rule's factor", 0.875 * linear, rule, 0.125 * linear)};
+    return std::vector<Difference>{within_the_rule(find(o[0], "factors 1"), find(o[1], "critical_lambda"))};
+  };
+  return trial;
+}
+
+/// Where deformation before buckling counts, the first critical point of the undisturbed path takes the place
+/// of the linear factor.
+std::optional<Trial> collapse_rule_of_arches(const Json& deck, Random& random) {
+  if (!is_pressed(deck, "collapse")) return std::nullopt;
+  Json ruled = deck;
+  disturb(ruled, random);
+  Trial trial;
+  trial.jobs = {{deck}, {ruled}};
+  trial.judge = [](const Outcomes& o) {
+    double first = std::numeric_limits<double>::infinity();
+    for (const char* key : {"bifurcation_lambda", "limit_lambda"})
+      if (const double at = find(o[0], key); at < first) first = at;
+    return std::vector<Difference>{within_the_rule(first, find(o[1], "critical_lambda"))};
   };
   return trial;
 }
 
 Json frame_with_buckling(Random& random) {
   Json deck;
-  do deck = random.chance(0.5) ? frame(random) : column(random);
+  do deck = random.chance(0.5) ? frame(random) : pressed_column(random);
   while (deck["steps"].back()["kind"] != "buckling");
   return deck;
 }
@@ -263,10 +239,12 @@ std::optional<Trial> found_shape_rests(const Json& deck, Random&) {
       return list;
     }
     list.clear();
+    // Where more than 3 % is told, up to the 30 % that end a step are allowed.
+    const double uneven = o[1].warnings.count("film_unevenness") > 0 ? 0.3 : 0.03;
     for (const auto& [key, q] : o[1].numbers) {
       if (key.find("displacement") != std::string::npos && key.rfind("node ", 0) == 0)
         list.push_back(difference(key, 0, (q.value - o[0].at(key)).norm(), 0.01 * o[1].size / facets));
-      if (key.rfind("membrane ", 0) == 0) list.push_back(difference(key, asked, q.value[0], 0.03 * asked));
+      if (key.rfind("membrane ", 0) == 0) list.push_back(difference(key, asked, q.value[0], uneven * asked));
     }
     std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.measure > b.measure; });
     return list;
@@ -346,6 +324,8 @@ std::optional<Trial> inverse_round_trip(const Json& deck, Random& random) {
     std::vector<Difference> list;
     if (o.size() < 3) return list;
     if (!o[2].done()) return std::vector<Difference>{{"inverse: " + o[2].message, 10}};
+    for (const auto& outcome : o)
+      if (!all_taut(outcome)) return list;  // the length of a slack cable has no influence to go by
 
     for (const auto& [key, q] : o[0].numbers)
       if (key.rfind("node ", 0) == 0 && q.unit == "m")
@@ -367,13 +347,17 @@ std::vector<Relation> relations_of_analyses() {
        frequency_and_probe},
       {"buckling_and_path",
        "The factor of linear buckling of a straight column is the first bifurcation on its path.",
-       "0.3 %: ten times the strain before buckling", column, buckling_and_path},
+       "0.3 %: ten times the strain before buckling", pressed_column, buckling_and_path},
       {"collapse_rule", "The rule of collapse lies within its steps below the factor of linear buckling.",
-       "between 0.75 and 1 of it", column, collapse_rule},
+       "between 0.75 and 1 of it", pressed_column, collapse_rule},
+      {"collapse_rule_of_arches",
+       "The rule of collapse of an arch lies within its steps below the first critical point of its path.",
+       "between 0.75 and 1 of it", pressed_arch, collapse_rule_of_arches},
       {"buckling_reversed", "Loads times c: factors over c, also where c is negative.",
        "2e-5: factors are printed to seven digits", frame_with_buckling, buckling_reversed},
       {"found_shape_rests", "The equilibrium after form-finding moves nothing.",
-       "1e-6 of the size; films 1 % of a facet and 3 % of the tension", found_structure, found_shape_rests},
+       "1e-6 of the size; films 1 % of a facet and 3 % of the tension, 30 % where it is told",
+       found_structure, found_shape_rests},
       {"two_form_findings", "Force densities and dynamic relaxation find the same net.",
        "1e-5 of the largest: relaxation stops at 1e-9 of the forces", found_net, two_form_findings},
       {"inverse_round_trip", "Places of a net whose cables were changed are met by `inverse`.",

@@ -15,7 +15,9 @@ Json shell(Random& random);      ///< a flat or curved patch of triangles or qua
 Json mast(Random& random);       ///< beams, guys, membranes, springs, masses, rigid links
 Json truss(Random& random);      ///< a steep dome of bars
 Json reflector(Random& random);  ///< a parametric one, tuned
-Json any_structure(Random& random);  ///< one of the families that are described by nodes and elements
+Json pressed_column(Random& random);  ///< straight, of beams or a lattice of bars, to buckle under "press"
+Json pressed_arch(Random& random);    ///< of beams, to lose its stability under "press" at its upper nodes
+Json any_structure(Random& random);   ///< one of the families that are described by nodes and elements
 Json any_structure_or_reflector(Random& random);
 
 }  // namespace tautline::metamorphic

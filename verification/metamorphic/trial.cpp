@@ -68,11 +68,7 @@ std::vector<Json> smaller(const Json& deck) {
 Verdict try_relation(const Relation& relation, const Json& deck, std::uint64_t seed, Runner& runner) {
   Random random(seed, relation.name + " again");
   Verdict verdict;
-  std::optional<Trial> trial;
-  try {
-    trial = relation.derive(deck, random);
-  } catch (const Json::exception&) {  // a deck made smaller may lack what the relation needs
-  }
+  const std::optional<Trial> trial = relation.derive(deck, random);
   if (!trial) return verdict;
   verdict.trial = *trial;
   Outcomes outcomes;
@@ -103,6 +99,19 @@ Verdict try_relation(const Relation& relation, const Json& deck, std::uint64_t s
   return verdict;
 }
 
+namespace {
+
+/// As try_relation(), of a deck that something was taken from: it may lack what the relation needs.
+Verdict try_smaller(const Relation& relation, const Json& deck, std::uint64_t seed, Runner& runner) {
+  try {
+    return try_relation(relation, deck, seed, runner);
+  } catch (const Json::exception&) {
+    return {};
+  }
+}
+
+}  // namespace
+
 Json smallest(const Relation& relation, Json deck, std::uint64_t seed, Runner& runner, double seconds) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
@@ -111,7 +120,7 @@ Json smallest(const Relation& relation, Json deck, std::uint64_t seed, Runner& r
     shrunk = false;
     for (auto& candidate : smaller(deck)) {
       if (Clock::now() > end) return deck;
-      const auto verdict = try_relation(relation, candidate, seed, runner);
+      const auto verdict = try_smaller(relation, candidate, seed, runner);
       if (verdict.kind != first.kind || verdict.n_done != first.n_done) continue;
       deck = std::move(candidate);
       shrunk = true;

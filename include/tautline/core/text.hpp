@@ -16,7 +16,13 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 std::string join(const std::vector<std::string>& words, std::string_view separator = ", ",
                  std::size_t most = 20);
 
+/// The first `most` bytes, no character cut in two, and "..." for what is left.
+std::string shortened(const std::string& text, std::size_t most);
+
 /// Number of characters (UTF-8 code points) in the first `bytes` bytes of `text`.
 int characters(std::string_view text, std::size_t bytes);
+
+/// Byte offset of the first byte that is no text in UTF-8 (control characters included), or npos.
+std::size_t first_bad_byte(std::string_view text);
 
 }  // namespace tautline

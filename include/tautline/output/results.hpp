@@ -14,6 +14,9 @@ namespace tautline::output {
 void write_results(const std::string& path, const nlohmann::ordered_json& results);
 nlohmann::ordered_json read_results(const std::string& path);
 
+/// Writes a text likewise. @throws LibraryError with the reason
+void write_text(const std::string& path, const std::string& text);
+
 /// Creates `directory` with its parents and proves that it can be written to. @throws LibraryError naming it
 /// and why
 void prepare_directory(const std::string& directory);

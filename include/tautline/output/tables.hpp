@@ -32,6 +32,9 @@ void write_shells(const std::string& path, const model::Model& model, const mode
 /// springs.csv: id,group,node_1,node_2,fx,fy,fz,mx,my,mz; in the spring's axes; node_2 is empty for one to
 /// the ground
 void write_springs(const std::string& path, const model::Model& model, const model::Response& response);
+/// A text as a csv cell: quoted where it holds a comma, a quote or a line end (RFC 4180), and with an
+/// apostrophe before what a spreadsheet would take for a formula.
+std::string csv_cell(const std::string& text);
 /// Any table of numbers: a header and columns of the same length, with 17 digits; NaN is an empty cell.
 void write_columns(const std::string& path, const std::vector<std::string>& header,
                    const std::vector<std::vector<double>>& columns);

@@ -79,6 +79,7 @@ void Offscreen::write(const std::string& png_path) {
   image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
   average(pixels->GetPointer(0), image);
   const std::string temporary = png_path + ".tmp";
+  std::remove(temporary.c_str());  // a link would be followed
   vtkNew<vtkPNGWriter> writer;
   writer->SetFileName(temporary.c_str());
   writer->SetInputData(image);
