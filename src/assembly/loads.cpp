@@ -214,7 +214,12 @@ System::NodalForces System::ground_springs() const {
 }
 
 System::NodalForces System::external() const {
-  NodalForces result{now_.force, now_.moment};
+  NodalForces result{Points(model_.nodes.size()), Points(model_.nodes.size())};
+  for (int node = 0; node < static_cast<int>(model_.nodes.size()); ++node) {
+    const Vec<6> load = dead_load(node);
+    result.force[node] = load.head<3>();
+    result.moment[node] = load.tail<3>();
+  }
   const auto add_pressure = [&](const auto& facets, std::size_t first) {
     for (std::size_t i = 0; i < facets.size(); ++i) {
       const double pressure = now_.pressure[first + i];

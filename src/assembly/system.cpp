@@ -11,6 +11,7 @@
 
 #include "assembly/contribution.hpp"
 #include "assembly/expansion.hpp"
+#include "assembly/inertia_relief.hpp"
 #include "assembly/load_audit.hpp"
 #include "assembly/own_elements.hpp"
 
@@ -77,6 +78,8 @@ System::System(model::Model model)
       support_stiffness_ = std::max(support_stiffness_, group.cable.axial_stiffness / size_);
 }
 
+System::~System() = default;
+
 void System::set_state(const model::State& state) {
   state_ = committed_ = state;
   drives_.clear();
@@ -101,7 +104,13 @@ std::vector<double> System::strains() const {
 }
 
 OutOfBalance System::begin_stage(const Boundary& boundary) {
-  kinematics_.hold(boundary.supports, turned_nodes(boundary));
+  relief_.reset();
+  if (boundary.free) {
+    refuse_motions(boundary.loads);
+    relief_ = std::make_unique<InertiaRelief>(model_, map_, state_);
+    state_ = relief_->centred(state_);
+  }
+  kinematics_.hold(relief_ ? relief_->holds(state_) : boundary.supports, turned_nodes(boundary));
   kinematics_.settle(state_);
   kinematics_.linearise(state_);
   start_ = now_;
@@ -185,14 +194,43 @@ void System::add_forces(const model::State& state, const Kinematics& at, std::ve
     const Expansion expansion(at, map_, nodes, false);
     expansion.add(-pressure_contribution(model_, state, nodes, pressure, Want::force).force, force);
   });
-  for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
-    const bool turns = map_.rotational[node];
-    if (now_.force[node].isZero(0) && (!turns || now_.moment[node].isZero(0))) continue;
-    Vec<6> load;
-    load << now_.force[node], now_.moment[node];
-    const Expansion expansion(at, map_, std::array<int, 1>{static_cast<int>(node)}, turns);
+  for (int node = 0; node < static_cast<int>(model_.nodes.size()); ++node) {
+    const bool turns = map_.rotational[static_cast<std::size_t>(node)];
+    const Vec<6> load = dead_load(node);
+    if (load.head(turns ? 6 : 3).isZero(0)) continue;
+    const Expansion expansion(at, map_, std::array<int, 1>{node}, turns);
     expansion.add(-load.head(turns ? 6 : 3), force);
   }
+}
+
+Vec<6> System::dead_load(int node) const {
+  const auto at = static_cast<std::size_t>(node);
+  Vec<6> load;
+  load << now_.force[at], now_.moment[at];
+  if (relief_) load += relief_->force(node);
+  return load;
+}
+
+void System::add_inertia(const model::State& state, std::vector<double>& force) {
+  relief_->balance(kinematics_, state, force);
+  for (int node = 0; node < static_cast<int>(model_.nodes.size()); ++node) {
+    const bool turns = map_.rotational[static_cast<std::size_t>(node)];
+    const Expansion expansion(kinematics_, map_, std::array<int, 1>{node}, turns);
+    expansion.add(-relief_->force(node).head(turns ? 6 : 3), force);
+  }
+}
+
+model::State System::centred(model::State state) const {
+  return relief_ ? relief_->centred(std::move(state)) : state;
+}
+
+void System::take_state() {
+  kinematics_.linearise(state_);
+  if (!relief_) return;
+  relief_->take_masses(state_);
+  for (std::size_t i = 0; i < model_.beams.size(); ++i)
+    model_.beams[i].line_load =
+        now_.line[model_.cables.size() + i] + relief_->line_load(model_.beams[i], state_);
 }
 
 std::span<const double> System::own_part(const std::vector<double>& all) const {
@@ -227,23 +265,26 @@ std::vector<double> System::increments_to(const la::Vector& x) const {
 
 void System::residual(const la::Vector& x, la::Vector& f) {
   const Stopwatch watch(assembly_seconds_);
-  residual_at(kinematics_.moved(state_, increments_to(x)), f);
+  residual_at(centred(kinematics_.moved(state_, increments_to(x))), f);
 }
 
 void System::residual_at(const model::State& state, la::Vector& f) {
   kinematics_.linearise(state);
   std::vector<double> force(origin_.size(), 0.0);
   magnitude_.assign(origin_.size(), 0.0);
+  if (relief_) relief_->clear();
   add_forces(state, kinematics_, force, magnitude_);
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] -= (1 - lambda_) * start_residual_[i];
+  if (relief_) add_inertia(state, force);
   for (std::size_t i = 0; i < force.size(); ++i)
-    force[i] = held()[i] ? 0.0 : force[i] - (1 - lambda_) * start_residual_[i];
+    if (held()[i]) force[i] = 0;
   f.write(own_part(force));
 }
 
 void System::accept(const la::Vector& x) {
-  state_ = kinematics_.moved(state_, increments_to(x));
+  state_ = centred(kinematics_.moved(state_, increments_to(x)));
   driven_to_ = lambda_;
-  kinematics_.linearise(state_);
+  take_state();
   x.gather(origin_);
 }
 
@@ -259,7 +300,7 @@ void System::commit() {
 void System::roll_back() {
   state_ = committed_;
   driven_to_ = committed_drive_;
-  kinematics_.linearise(state_);
+  take_state();
   restart();
 }
 

@@ -19,7 +19,7 @@ void System::return_to(const Kept& kept) {
   const auto& point = static_cast<const Place&>(kept);
   state_ = point.state;
   driven_to_ = point.driven_to;
-  kinematics_.linearise(state_);
+  take_state();
   restart();
   apply(point.lambda);
 }

@@ -8,6 +8,7 @@
 
 #include "assembly/contribution.hpp"
 #include "assembly/expansion.hpp"
+#include "assembly/inertia_relief.hpp"
 #include "assembly/link_terms.hpp"
 
 namespace tautline::assembly {
@@ -62,8 +63,7 @@ double System::second_variation(const la::Vector& x) const {
   for (int at = 0; at < static_cast<int>(model_.nodes.size()); ++at) {
     if (map_.node_rank[at] != la::rank() || !load_bends(at)) continue;
     const bool turns = map_.rotational[at];
-    Vec<6> load;
-    load << -now_.force[at], -now_.moment[at];
+    const Vec<6> load = -dead_load(at);
     const std::array<int, 1> node{at};
     add_links(Expansion(kinematics_, map_, node, turns), node, turns, load);
   }
@@ -138,8 +138,9 @@ std::vector<double> System::nodal_imbalance() const {
 }
 
 System::NodalForces System::reactions() const {
-  const auto residual = nodal_imbalance();
   NodalForces result{Points(model_.nodes.size(), Vec3::Zero()), Points(model_.nodes.size(), Vec3::Zero())};
+  if (relief_) return result;  // nothing is supported
+  const auto residual = nodal_imbalance();
   const auto held_part = [&](int block) -> Vec3 {
     Vec3 value = Vec3::Zero();
     for (int c = 0; c < 3; ++c)
@@ -220,9 +221,17 @@ System::NodalForces System::constraint_forces() const {
   return result;
 }
 
+std::vector<BodyAcceleration> System::accelerations() const {
+  return relief_ ? relief_->accelerations(state_) : std::vector<BodyAcceleration>{};
+}
+
 System::NodalField System::nodal(const la::Vector& x) const {
   std::vector<double> all;
   x.gather(all);
+  return nodal(all);
+}
+
+System::NodalField System::nodal(const std::vector<double>& all) const {
   const auto sum = [&](const std::vector<Dependence>& list) {
     Vec3 value = Vec3::Zero();
     for (const auto& d : list)

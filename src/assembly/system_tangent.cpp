@@ -184,7 +184,9 @@ class WrinklingOnRay {
 bool System::load_bends(int node) const {
   const bool follows = kinematics_.link_of(node) >= 0;
   const bool by_moment = follows || kinematics_.cyclic_of(node) >= 0 || kinematics_.charted(node);
-  return (follows && !now_.force[node].isZero(0)) || (by_moment && !now_.moment[node].isZero(0));
+  if (!by_moment) return false;
+  const Vec<6> load = dead_load(node);
+  return (follows && !load.head<3>().isZero(0)) || !load.tail<3>().isZero(0);
 }
 
 template <class ContributionOf, class Visit>
@@ -202,8 +204,7 @@ void System::for_each_stiffness(const ContributionOf& contribution_of, const Vis
   for (int node = 0; node < static_cast<int>(model_.nodes.size()); ++node) {
     if (!load_bends(node)) continue;
     const bool turns = map_.rotational[node];
-    Vec<6> load;
-    load << -now_.force[node], -now_.moment[node];
+    const Vec<6> load = -dead_load(node);
     ElementMatrix none = ElementMatrix::Zero(turns ? 6 : 3, turns ? 6 : 3);
     visit(std::array<int, 1>{node}, turns, load, none);
   }

@@ -154,7 +154,7 @@ class GroupCheck {
       const bool in_net = form_finding->net.empty() || contains(form_finding->net, group);
       using enum steps::FormMethod;
       const bool finds_densities = form_finding->method == linear || form_finding->method == constraints ||
-                                   form_finding->method == film;
+                                   form_finding->method == film || form_finding->method == self_stress;
       return (finds_densities && in_net) || contains(form_finding->ties, group);
     });
   }

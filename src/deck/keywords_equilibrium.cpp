@@ -156,7 +156,21 @@ const BlockSet& imperfection_blocks() {
   return set;
 }
 
+void check_free(Reader& reader, const Node& node, const EquilibriumOptions& options) {
+  if (options.support != Ground::free) return;
+  const auto refuse = [&](const char* key, bool given, const std::string& what, const std::string& hint) {
+    if (const Node* value = node.find(key); value != nullptr && given)
+      reader.complain(value->label, what + " does not go with support free", reader.context(), {}, hint);
+  };
+  refuse("stages", true, "\"stages\"", "hold parts in a step before, with the deck's supports");
+  refuse("release", options.release == Release::automatic, "release automatic", "nothing is held");
+  refuse("control", options.control == Control::arc_length, "control arc_length",
+         "follow the path with supports that hold statically determinate");
+  refuse("scatter", true, "\"scatter\"", "scatter in a step with supports");
+}
+
 void check_equilibrium(Reader& reader, const Node& node, EquilibriumOptions& options) {
+  check_free(reader, node, options);
   if (options.release == Release::automatic) {
     if (const Node* value = node.find("stages"))
       reader.complain(value->label, "\"stages\" has no effect with release automatic", reader.context(), {},
@@ -236,6 +250,12 @@ Block equilibrium_block() {
           "An unstable equilibrium at the end counts as done. Without it the run ends with it (exit code 4), "
           "except "
           "on a path with control: arc_length, which may be unstable by nature.");
+  b.choice("support", &Options::support,
+           std::vector<std::pair<std::string, Ground>>{{"deck", Ground::deck}, {"free", Ground::free}})
+      .says(
+          "deck: the deck's supports; free: nothing is held, as in orbit, whatever the deck supports. Each "
+          "body is accelerated by what acts on it and the inertia of its own mass balances that; its mean "
+          "displacement and rotation, weighed by mass, are zero.");
   b.block("scatter", &Options::scatter, scatter_blocks())
       .says("Random displacements and tensions at the start of the step.");
   b.check(check_equilibrium);

@@ -248,7 +248,7 @@ const std::vector<std::pair<std::string, FormMethod>>& methods() {
       {"tension", tension},   {"linear", linear},
       {"balanced", balanced}, {"constraints", constraints},
       {"elastic", elastic},   {"dynamic_relaxation", dynamic_relaxation},
-      {"film", film}};
+      {"film", film},         {"self_stress", self_stress}};
   return words;
 }
 
@@ -296,7 +296,9 @@ void add_net_keys(Builder& b) {
   using Options = FormFindingOptions;
   b.key("net", &Options::net)
       .refers("cable or bar group")
-      .by_default("front_... cable groups of a reflector, else all cable groups")
+      .by_default(
+          "front_... cable groups of a reflector, else all cable groups, with method self_stress bar groups, "
+          "too")
       .says("Groups of cables and bars whose shape is found.");
   b.key("fixed", &Options::fixed)
       .refers("group")
@@ -354,7 +356,10 @@ void add_method_keys(Builder& b) {
           "for given force densities; balanced: for force densities that balance the net where it is drawn, "
           "as well as can be, with tensions near those of the groups; constraints: any "
           "mixture of demands; elastic: for unstressed lengths, by Newton's method; dynamic_relaxation: for "
-          "unstressed lengths, constant tensions and films; film: films of given stress with cables.");
+          "unstressed lengths, constant tensions and films; film: films of given stress with cables; "
+          "self_stress: the drawn shape stays, and of all states of self-stress of its cables and bars the "
+          "most "
+          "even one is taken in which cables pull and groups carry the mean tension that they state.");
   b.choice("solver", &Options::solver,
            std::vector<std::pair<std::string, FormSolver>>{{"automatic", FormSolver::automatic},
                                                            {"smallest_norm", FormSolver::smallest_norm},
@@ -378,10 +383,10 @@ void add_method_keys(Builder& b) {
       .says("Force density to start from, or of method linear, of cables without a state of their own.");
   b.key("tolerance", &Options::tolerance)
       .above(0)
-      .by_default("1e-10; dynamic_relaxation 1e-9, film 1e-8")
+      .by_default("1e-10; dynamic_relaxation 1e-9, film 1e-8, self_stress 1e-6")
       .says(
           "Largest deviation from what is asked for over its size, or force out of balance over the "
-          "largest.");
+          "largest; method self_stress: singular values below this part of the largest count as zero.");
   b.key("max_iterations", &Options::max_iterations)
       .at_least(1)
       .by_default("50 to 1000 by method; dynamic_relaxation 100000")

@@ -149,11 +149,18 @@ Block make_tuning() {
 Block make_modal() {
   auto b = step_builder<ModalOptions>(
       "modal", "Natural frequencies and modes about the present state, with its prestress.");
-  b.key("modes", &ModalOptions::modes).at_least(1).says("Number of modes, from the lowest frequency.");
+  b.key("modes", &ModalOptions::modes)
+      .at_least(1)
+      .says("Number of modes, from the lowest frequency; those of a rigid body are not among them.");
   b.choice("mass", &ModalOptions::mass,
            std::vector<std::pair<std::string, assembly::MassKind>>{
                {"consistent", assembly::MassKind::consistent}, {"lumped", assembly::MassKind::lumped}})
       .says("Mass matrix: consistent with the shape functions, or lumped at the nodes.");
+  b.choice("support", &ModalOptions::support,
+           std::vector<std::pair<std::string, Ground>>{{"deck", Ground::deck}, {"free", Ground::free}})
+      .says(
+          "deck: the deck's supports, if it has any; free: the structure floats, whatever the deck supports. "
+          "Rigid-body modes are counted and left out.");
   return b.take();
 }
 

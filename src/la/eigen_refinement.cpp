@@ -37,9 +37,13 @@ class Refinement {
       value = normalise(x);
     }
     mode.write(own(mode, x));
+    keep_out(x);
+    return {static_cast<double>(value), residual(x, value)};
+  }
+  /// Of all modes to come.
+  void keep_out(const std::vector<double>& x) {
     lower_.push_back(x);
     lower_mass_.push_back(mass_.multiply_extended(x));
-    return {static_cast<double>(value), residual(x, value)};
   }
 
  private:
@@ -97,11 +101,17 @@ class Refinement {
 
 }  // namespace
 
-void refine(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, double shift, EigenPairs& pairs) {
+void refine(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, double shift,
+            const std::vector<Vector>& known, EigenPairs& pairs) {
   DirectSolver solver;
   const SymmetricMatrix shifted = stiffness.plus(-shift, mass);
   if (!solver.factor(shifted)) throw LibraryError(solver.failure());
   Refinement refinement(stiffness, mass, solver);
+  for (const auto& vector : known) {
+    std::vector<double> x;
+    vector.gather(x);
+    refinement.keep_out(x);
+  }
   for (std::size_t i = 0; i < pairs.vectors.size(); ++i)
     std::tie(pairs.values[i], pairs.residuals[i]) = refinement.refine(pairs.vectors[i]);
   pairs.timings = solver.timings();

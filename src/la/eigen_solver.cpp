@@ -43,12 +43,14 @@ bool moves_no_mass(const SymmetricMatrix& mass, ::Vec x) {
   return !(moved > none * largest * length * length);
 }
 
-/// Up to `count` pairs nearest to the shift that SLEPc finds outside the space of those known, put to them.
+/// Up to `count` pairs nearest to the shift that SLEPc finds outside the space of those known and found, put
+/// to the latter.
 void find_more(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count, double shift,
-               EigenPairs& pairs) {
+               const std::vector<Vector>& known, EigenPairs& pairs) {
   const EigenHandle eps;
   configure(eps.get(), stiffness, mass, count, shift);
   std::vector<::Vec> space;
+  for (const auto& vector : known) space.push_back(vector.handle());
   for (const auto& vector : pairs.vectors) space.push_back(vector.handle());
   if (!space.empty())
     check(EPSSetDeflationSpace(eps.get(), static_cast<PetscInt>(space.size()), space.data()),
@@ -99,13 +101,14 @@ void arrange(EigenPairs& pairs, int count, const std::function<bool(double, doub
 }
 
 [[noreturn]] void too_few(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count,
-                          double shift, const EigenPairs& pairs) {
+                          double shift, std::size_t known, const EigenPairs& pairs) {
   constexpr double far = 1e6;
   const auto found = static_cast<int>(pairs.values.size());
   const auto sentence = fmt::format("SLEPc found {} of the {} modes asked for", found, count);
   if (found == 0) throw LibraryError(sentence + ": check that the structure has mass");
   const double radius = far * std::abs(pairs.values.back() - shift);
-  if (count_within(stiffness, mass, shift, radius) > found) throw LibraryError(sentence + ": ask for fewer");
+  if (count_within(stiffness, mass, shift, radius) > found + static_cast<int>(known))
+    throw LibraryError(sentence + ": ask for fewer");
   throw ModelError(
       fmt::format("only {} of the {} modes asked for exist: no more unknowns have a mass of their own. Ask "
                   "for at most {}",
@@ -115,22 +118,23 @@ void arrange(EigenPairs& pairs, int count, const std::function<bool(double, doub
 }  // namespace
 
 EigenPairs solve_vibration(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count,
-                           double shift) {
+                           double shift, const std::vector<Vector>& known) {
   constexpr int most_rounds = 12, spare = 2;
   EigenPairs pairs;
   for (int round = 0, more = count + spare; round < most_rounds; ++round) {
-    find_more(stiffness, mass, more, shift, pairs);
+    find_more(stiffness, mass, more, shift, known, pairs);
     arrange(pairs, count + most_rounds * (count + spare),
             [&](double a, double b) { return std::abs(a - shift) < std::abs(b - shift); });
-    if (static_cast<int>(pairs.values.size()) < count) too_few(stiffness, mass, count, shift, pairs);
+    if (static_cast<int>(pairs.values.size()) < count)
+      too_few(stiffness, mass, count, shift, known.size(), pairs);
     std::vector<double> distances;
     for (const double value : pairs.values) distances.push_back(std::abs(value - shift));
     const Gap gap = gap_behind(distances, count);
-    more = count_within(stiffness, mass, shift, gap.place) - gap.before;
+    more = count_within(stiffness, mass, shift, gap.place) - static_cast<int>(known.size()) - gap.before;
     if (more > 0) continue;
     arrange(pairs, count, [&](double a, double b) { return std::abs(a - shift) < std::abs(b - shift); });
     arrange(pairs, count, std::less<>());
-    refine(stiffness, mass, shift, pairs);
+    refine(stiffness, mass, shift, known, pairs);
     return pairs;
   }
   throw LibraryError(

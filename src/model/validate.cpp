@@ -182,10 +182,6 @@ void check_connection(const Model& model, Faults& faults) {
   for (const auto& link : model.links) used[link.leader] = used[link.follower] = true;
   for (std::size_t i = 0; i < used.size(); ++i)
     if (!used[i]) faults.add("node {} belongs to no element: remove it or connect it", i + 1);
-  const bool grounded = std::any_of(model.springs.begin(), model.springs.end(),
-                                    [](const Spring& spring) { return spring.grounded(); });
-  if (model.supports.empty() && !grounded)
-    faults.add("nothing is supported: the structure can move as a rigid body; add an entry to \"supports\"");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <tautline/core/error.hpp>
 #include <tautline/model/response.hpp>
 
 #include "steps/context.hpp"
@@ -34,6 +35,11 @@ void show_modes(Context& context, const LinearBuckling& found) {
 }  // namespace
 
 Json run_step(Context& context, const BucklingOptions& options) {
+  context.system();
+  if (!context.is_supported({}))
+    throw ModelError(
+        "nothing is supported, and linear buckling of a structure that floats is not available: hold it "
+        "statically determinate, with the forces of inertia as loads");
   const auto loads = scaled_loads(context, options.loads);
   if (const auto reason = come_to_rest(context); !reason.empty()) return failed(reason);
   context.progress.update(fmt::format("{} | {} modes", context.step_name, options.modes));

@@ -58,7 +58,9 @@ void foretell_mechanisms(Context& context) {
     if (stages.empty()) stages.emplace_back();
     for (const auto& stage : stages) {
       context.system();
-      context.system().begin_stage(context.boundary(stage.hold, false));
+      context.system().begin_stage(equilibrium->support == Ground::free
+                                       ? context.free_boundary(false)
+                                       : context.boundary(stage.hold, false));
       if (const auto mechanism = assembly::find_mechanism(context.system(), context.workspace()))
         throw ModelError(fmt::format("step \"{}\": {}", step.name, mechanism->text));
     }

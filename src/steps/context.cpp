@@ -148,6 +148,24 @@ void Context::write_fields(const std::string& name, const output::FieldGrid& gri
   fields_.write(name, output::extract_piece(grid, owner, la::rank()));
 }
 
+std::vector<model::Load> Context::loads_in_action(bool loaded) const {
+  std::vector<model::Load> loads;
+  if (!loaded) return loads;
+  const auto acts = [&](const std::string& name) {
+    return std::find(acting_loads.begin(), acting_loads.end(), name) != acting_loads.end();
+  };
+  for (const auto& load : system_->model().loads)
+    if (acts(load.name)) loads.push_back(load);
+  return loads;
+}
+
+bool Context::is_supported(const std::vector<std::string>& hold) const {
+  const auto& model = system_->model();
+  return !hold.empty() || !model.supports.empty() ||
+         std::any_of(model.springs.begin(), model.springs.end(),
+                     [](const model::Spring& spring) { return spring.grounded(); });
+}
+
 assembly::Boundary Context::boundary(const std::vector<std::string>& hold, bool loaded) const {
   const auto& model = system_->model();
   assembly::Boundary boundary;
@@ -158,13 +176,22 @@ assembly::Boundary Context::boundary(const std::vector<std::string>& hold, bool 
     held.on = hold;
     held.nodes = model.nodes_of(hold);
   }
-  if (!loaded) return boundary;
-  const auto acts = [&](const std::string& name) {
-    return std::find(acting_loads.begin(), acting_loads.end(), name) != acting_loads.end();
-  };
-  for (const auto& load : model.loads)
-    if (acts(load.name)) boundary.loads.push_back(load);
+  if (!is_supported(hold))
+    throw ModelError(
+        "nothing is supported: the structure can move as a rigid body. Add an entry to \"supports\"; or, for "
+        "a structure that floats, give the equilibrium step `support: free` (its loads accelerate it; modal "
+        "steps need no support)");
+  boundary.loads = loads_in_action(loaded);
   return boundary;
+}
+
+assembly::Boundary Context::free_boundary(bool loaded) const {
+  return {{}, loads_in_action(loaded), true};
+}
+
+assembly::Boundary Context::vibration_boundary(Ground ground) const {
+  return {ground == Ground::free ? std::vector<model::Support>{} : system_->model().supports,
+          loads_in_action(true)};
 }
 
 namespace {

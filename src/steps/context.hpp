@@ -84,9 +84,17 @@ class Context {
   /// Writes a moment of fields (all ranks, each its piece).
   void write_fields(const std::string& name, const output::FieldGrid& grid);
   /// Boundary with the deck's supports, all of `hold` clamped, and the loads that act if `loaded`.
+  /// @throws ModelError if that supports nothing
   assembly::Boundary boundary(const std::vector<std::string>& hold, bool loaded) const;
+  /// Whether supports of the deck, `hold` or springs to the ground hold the system anywhere.
+  bool is_supported(const std::vector<std::string>& hold) const;
+  /// Boundary of a free structure, whatever supports the deck has.
+  assembly::Boundary free_boundary(bool loaded) const;
+  /// Boundary of vibrations: with the deck's supports, if it has any, unless the structure is free.
+  assembly::Boundary vibration_boundary(Ground ground) const;
 
  private:
+  std::vector<model::Load> loads_in_action(bool loaded) const;
   template <class Picture>
   void draw_any(const std::string& name, const std::string& caption, const Picture& picture);
 

@@ -91,6 +91,20 @@ void follow_parts(Context& context, const EquilibriumOptions& options, StageRunn
   refuse_unstable(options, runner, entry);
 }
 
+/// How each body of a free structure is accelerated.
+Json accelerations_json(const assembly::System& system) {
+  Json list = Json::array();
+  const auto triple = [](const Vec3& v) { return Json{v.x(), v.y(), v.z()}; };
+  for (const auto& body : system.accelerations())
+    list.push_back({{"nodes", body.nodes},
+                    {"first_node", body.first_node + 1},
+                    {"mass", body.mass},
+                    {"centre", triple(body.centre)},
+                    {"acceleration", triple(body.linear)},
+                    {"angular_acceleration", triple(body.angular)}});
+  return list;
+}
+
 }  // namespace
 
 Json run_step(Context& context, const EquilibriumOptions& options) {
@@ -107,6 +121,7 @@ Json run_step(Context& context, const EquilibriumOptions& options) {
   entry["stages"] = runner.entries();
   const auto response = model::evaluate_response(system.model(), system.state());
   entry["reactions"] = reactions_json(system, runner.boundary(), system.reactions());
+  if (options.support == Ground::free) entry["bodies"] = accelerations_json(system);
   if (!runner.way().empty()) entry["path"] = runner.way();
   entry["critical_points"] = runner.critical();
   entry["groups"] = groups_json(model::summarise_groups(system.model(), system.state(), response));

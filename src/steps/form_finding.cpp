@@ -209,7 +209,7 @@ void show(Context& context) {
   context.subdivide = {};
   context.set_system(context.structure);
   auto& system = context.system();
-  system.begin_stage(context.boundary({}, false));
+  system.begin_stage({system.model().supports, {}});  // a structure that floats has none
   if (!context.draws() || system.model().cables.empty()) return;
   draw_tensions(context, model::evaluate_response(system.model(), system.state()));
 }

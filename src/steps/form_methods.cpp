@@ -12,6 +12,8 @@
 #include <tautline/formfinding/minimal_film.hpp>
 #include <tautline/formfinding/node_error.hpp>
 
+#include "steps/self_stress_form.hpp"
+
 namespace tautline::steps {
 
 namespace {
@@ -405,6 +407,8 @@ Form find_by_method(const Context& context, const FormFindingOptions& options, c
       return relax(context, options, form);
     case FormMethod::film:
       return find_film(context, options, form);
+    case FormMethod::self_stress:
+      return find_self_stressed(context, options, form);
     case FormMethod::tension:
       break;
   }
@@ -416,6 +420,10 @@ Form find_by_method(const Context& context, const FormFindingOptions& options, c
 }
 
 }  // namespace
+
+Points net_reactions(const FormNet& form, const Points& nodes, const VecX& tension) {
+  return reactions(form, nodes, tension);
+}
 
 Form find_form(const Context& context, const FormFindingOptions& options, const FormNet& form) {
   try {

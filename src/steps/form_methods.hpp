@@ -21,6 +21,9 @@ struct Form {
   Json details;                  ///< of the method, for results.json
 };
 
+/// What branches leave at each node [N].
+Points net_reactions(const FormNet& form, const Points& nodes, const VecX& tension);
+
 /// @throws ModelError where the net or what is asked of it makes no sense
 Form find_form(const Context& context, const FormFindingOptions& options, const FormNet& form);
 

@@ -24,7 +24,11 @@ std::vector<std::string> groups_of_kind(const model::Model& structure, model::El
 std::vector<std::string> net_groups(const Context& context, const FormFindingOptions& options) {
   if (!options.net.empty()) return options.net;
   if (context.surface) return front_net_groups(context.structure);
-  return groups_of_kind(context.structure, model::ElementKind::cable);
+  auto groups = groups_of_kind(context.structure, model::ElementKind::cable);
+  if (options.method != FormMethod::self_stress) return groups;
+  const auto bars = groups_of_kind(context.structure, model::ElementKind::bar);
+  groups.insert(groups.end(), bars.begin(), bars.end());
+  return groups;
 }
 
 std::vector<std::string> cloth_groups(const Context& context, const FormFindingOptions& options) {

@@ -2,15 +2,20 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <span>
 
 #include <fmt/format.h>
 
+#include <tautline/assembly/bodies.hpp>
 #include <tautline/core/error.hpp>
+#include <tautline/core/text.hpp>
 #include <tautline/la/eigen_solver.hpp>
 #include <tautline/la/session.hpp>
 #include <tautline/model/response.hpp>
 
 #include "steps/context.hpp"
+#include "steps/free_modes.hpp"
 #include "steps/mode_shapes.hpp"
 #include "steps/summaries.hpp"
 #include "steps/fields.hpp"
@@ -20,27 +25,16 @@ namespace tautline::steps {
 namespace {
 
 /// Unit rigid motions about the origin in the current positions: three translations, three rotations.
-std::vector<la::Vector> rigid_motions(const assembly::System& system) {
-  const auto& map = system.dof_map();
-  const auto positions = model::positions(system.model(), system.state());
+std::vector<la::Vector> unit_motions(const assembly::System& system) {
+  std::vector<int> nodes(system.model().nodes.size());
+  std::iota(nodes.begin(), nodes.end(), 0);
   std::vector<la::Vector> motions;
-  for (int k = 0; k < 6; ++k) {
-    std::vector<double> values(static_cast<std::size_t>(system.n_dofs()), 0.0);
-    const Vec3 axis = Vec3::Unit(k % 3);
-    for (std::size_t node = 0; node < positions.size(); ++node) {
-      const Vec3 motion = k < 3 ? axis : Vec3(axis.cross(positions[node]));
-      const auto set = [&](int block, const Vec3& value) {
-        if (block >= 0)
-          Eigen::Map<Vec3>(values.data() + 3 * block) = system.kinematics().unknown_of(block, value);
-      };
-      set(map.displacement_block[node], motion);
-      const int link = system.kinematics().link_of(static_cast<int>(node));
-      const bool hinge = link >= 0 && !system.model().links[link].hinge.empty();
-      if (k >= 3 && !hinge) set(map.rotation_block[node], axis);
-    }
-    la::Vector vector(map.layout);
-    vector.write(std::span(values).subspan(3 * map.layout.first, 3 * map.layout.local));
-    motions.push_back(std::move(vector));
+  for (const auto& motion : assembly::unit_motions(Vec3::Zero())) {
+    const auto values = assembly::unknowns_of(system, nodes, motion);
+    const auto& layout = system.layout();
+    auto& vector = motions.emplace_back(layout);
+    vector.write(std::span(values).subspan(static_cast<std::size_t>(3 * layout.first),
+                                           static_cast<std::size_t>(3 * layout.local)));
   }
   return motions;
 }
@@ -62,7 +56,7 @@ double strange_part(const la::EigenPairs& pairs, std::size_t mode) {
 /// sharpness.
 void add_effective_masses(const assembly::System& system, const la::SymmetricMatrix& mass,
                           const la::EigenPairs& pairs, Json& entry) {
-  const auto motions = rigid_motions(system);
+  const auto motions = unit_motions(system);
   Json table = Json::array(), levels = Json::array();
   la::Vector product(system.layout());
   std::vector<double> whole;
@@ -85,11 +79,50 @@ void add_effective_masses(const assembly::System& system, const la::SymmetricMat
   entry["effective_mass_rounding"] = levels;
 }
 
+/// What can move without resistance: told by the node that each motion moves most.
+void warn_of_mechanisms(Context& context, const la::EigenPairs& mechanisms) {
+  const auto& system = context.system();
+  std::vector<std::string> places;
+  for (const auto& mode : mechanisms.vectors) {
+    const auto field = system.nodal(mode);
+    const auto size = [&](std::size_t i) {
+      return field.displacement[i].norm() + system.size() * field.rotation[i].norm();
+    };
+    std::size_t most = 0;
+    for (std::size_t i = 1; i < field.displacement.size(); ++i)
+      if (size(i) > (1 + 1e-6) * size(most)) most = i;
+    const Vec3& at = system.model().nodes[most];
+    const auto place = fmt::format("node {} at ({:.4g}, {:.4g}, {:.4g})", most + 1, at.x(), at.y(), at.z());
+    if (places.size() < 5 && std::find(places.begin(), places.end(), place) == places.end())
+      places.push_back(place);
+  }
+  const auto n = mechanisms.vectors.size();
+  context.warn("mechanism",
+               fmt::format("{} mode{} without frequency beside those of a rigid body {} left out: parts of "
+                           "the structure move against each other without resistance, most of all {}",
+                           n, n == 1 ? "" : "s", n == 1 ? "is" : "are", join(places, ", ")));
+}
+
+/// Modes of the state, rigid ones and mechanisms left out and counted in the entry.
+la::EigenPairs solve(Context& context, const ModalOptions& options, const la::SymmetricMatrix& mass,
+                     Json& entry) {
+  auto& system = context.system();
+  const auto& stiffness = context.workspace().tangent;
+  const auto rigid = rigid_modes(system, stiffness, mass);
+  entry["rigid_modes"] = rigid.modes.size() + rigid.massless.size();
+  entry["mechanisms"] = 0;
+  if (entry["rigid_modes"] == 0) return la::solve_vibration(stiffness, mass, options.modes);
+  auto found = solve_free(system, stiffness, mass, rigid, options.modes);
+  entry["mechanisms"] = found.mechanisms.vectors.size();
+  if (!found.mechanisms.vectors.empty()) warn_of_mechanisms(context, found.mechanisms);
+  return std::move(found.elastic);
+}
+
 }  // namespace
 
 Json run_step(Context& context, const ModalOptions& options) {
   auto& system = context.system();
-  system.begin_stage(context.boundary({}, true));
+  system.begin_stage(context.vibration_boundary(options.support));
   auto& workspace = context.workspace();
   system.tangent(workspace.tangent);
   const auto mass = system.mass(options.mass);
@@ -100,13 +133,13 @@ Json run_step(Context& context, const ModalOptions& options) {
         "sections a mass, or add point masses");
   context.progress.update(
       fmt::format("{} | {} modes of {} unknowns", context.step_name, options.modes, system.n_dofs()));
-  const auto pairs = la::solve_vibration(workspace.tangent, mass, options.modes);
-  workspace.solver.add(pairs.timings);
-  // A rigid motion of a free structure has the eigenvalue zero, up to the rounding of the stiffness.
-  const double rounding =
-      1e-14 * workspace.tangent.norm_of_diagonal() / std::max(mass.norm_of_diagonal(), 1e-300);
   Json entry;
   entry["status"] = "done";
+  const auto pairs = solve(context, options, mass, entry);
+  workspace.solver.add(pairs.timings);
+  // The level below which an eigenvalue is the rounding of the stiffness.
+  const double rounding =
+      1e-14 * workspace.tangent.norm_of_diagonal() / std::max(mass.norm_of_diagonal(), 1e-300);
   entry["frequencies"] = Json::array();
   entry["frequency_rounding"] = std::sqrt(rounding) / (2 * std::numbers::pi);
   add_effective_masses(system, mass, pairs, entry);

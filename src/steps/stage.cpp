@@ -168,7 +168,8 @@ bool StageRunner::run(const StageOptions& stage, const std::vector<std::string>&
   const bool anew = context_.resume.has_value();
   if (anew) system.restore(context_.resume->start);
   context_.acting_loads = loads;
-  boundary_ = context_.boundary(stage.hold, true);
+  boundary_ =
+      options_.support == Ground::free ? context_.free_boundary(true) : context_.boundary(stage.hold, true);
   Checkpoint bookmark = context_.checkpoints.latest();
   bookmark.point.emplace();
   bookmark.point->stage = static_cast<int>(entries_.size());

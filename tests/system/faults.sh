@@ -54,6 +54,12 @@ case $1 in
     run 3 "$here/decks/mechanism.yaml"
     says "$WORK/err" 'mechanism|can move|singular'
     ;;
+  unsupported)   # vibrates, but finds no equilibrium unless told that it floats
+    expect 3 "$TAUTLINE" check "$here/decks/unsupported.yaml"
+    says "$WORK/err" 'nothing is supported.*support: free'
+    run 3 "$here/decks/unsupported.yaml"
+    says "$WORK/err" 'nothing is supported.*support: free'
+    ;;
   loose_part)
     expect 3 "$TAUTLINE" check "$here/decks/loose_part.yaml"
     says "$WORK/err" 'mechanism|can move|singular|loose|connected'

@@ -4,6 +4,7 @@
 /// the parallel layout.
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -25,6 +26,8 @@ namespace tautline::assembly {
 struct Boundary {
   std::vector<model::Support> supports;
   std::vector<model::Load> loads;
+  /// Nothing is held: every body is accelerated by what acts on it (inertia relief). No supports then.
+  bool free = false;
 };
 
 /// Size of what the supports carried and do no longer: the start of a stage.
@@ -61,6 +64,16 @@ struct Prescribed {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< displacement [m]
   std::string load;                             ///< one that moves it
 };
+
+/// How a free body is accelerated by what acts on it.
+struct BodyAcceleration {
+  Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();  ///< of its centre of mass [m/s^2]; [rad/s^2]
+  Vec3 centre = Vec3::Zero();                          ///< of mass, at present [m]
+  double mass = 0;                                     ///< [kg]
+  int nodes = 0, first_node = 0;                       ///< how many; the first in the model's order
+};
+
+class InertiaRelief;
 
 /// A point of a stage's path.
 struct Place : analysis::PathProblem::Kept {
@@ -107,6 +120,7 @@ struct Pull {
 class System : public analysis::PathProblem {
  public:
   explicit System(model::Model model);
+  ~System() override;
   System(const System&) = delete;
   System& operator=(const System&) = delete;
 
@@ -215,6 +229,9 @@ class System : public analysis::PathProblem {
     Points displacement, rotation;
   };
   NodalField nodal(const la::Vector& x) const;
+  NodalField nodal(const std::vector<double>& all) const;
+  /// Of each body of a free structure, in the state of the last residual; empty where supports hold it.
+  std::vector<BodyAcceleration> accelerations() const;
 
  private:
   struct Share {
@@ -238,6 +255,15 @@ class System : public analysis::PathProblem {
   std::vector<double> out_of_balance() const;
   /// Dead loads and pressure on every node; catenaries feel their weight themselves.
   NodalForces external() const;
+  /// Dead load on a node, inertia of a free body among it: force, then moment.
+  Vec<6> dead_load(int node) const;
+  /// Adds the inertia of free bodies that balances these forces on the unknowns, complete in this rank's own
+  /// entries, and keeps it as what acts.
+  void add_inertia(const model::State& state, std::vector<double>& force);
+  /// The state with each free body where its mean displacement and rotation are zero.
+  model::State centred(model::State state) const;
+  /// What follows from the state: derivatives of the unknowns, masses of free bodies.
+  void take_state();
   /// Internal less external force on every node, what links carry put to their leaders.
   NodalForces nodal_residual() const;
   /// What acts under the loads of `boundary` with these initial strains of the cables: dead loads of the
@@ -303,7 +329,8 @@ class System : public analysis::PathProblem {
   double support_stiffness_ = 1;
   mutable std::vector<double> magnitude_;  // of the last residual, all unknowns
   mutable double assembly_seconds_ = 0;
-  std::vector<Branch> branches_;  // of the cables, or none: their own
+  std::vector<Branch> branches_;           // of the cables, or none: their own
+  std::unique_ptr<InertiaRelief> relief_;  // of a free structure
 };
 
 }  // namespace tautline::assembly

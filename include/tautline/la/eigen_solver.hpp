@@ -22,8 +22,11 @@ struct EigenPairs {
 /// That none is left out, multiple ones least of all, is shown by the inertia of K - s M on either side of
 /// those found.
 /// @throws ModelError if there are fewer; LibraryError if fewer converge
+///
+/// @param known  vectors of the null space of K, orthonormal in M: counted and kept out; K may then be
+///               singular, and the shift must be below zero
 EigenPairs solve_vibration(const SymmetricMatrix& stiffness, const SymmetricMatrix& mass, int count,
-                           double shift = 0);
+                           double shift = 0, const std::vector<Vector>& known = {});
 
 /// Which end of a spectrum.
 enum class Extreme { lowest, highest, both };

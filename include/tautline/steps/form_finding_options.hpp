@@ -24,7 +24,8 @@ enum class FormMethod {
   constraints,  ///< any mixture of tensions, lengths and reactions
   elastic,      ///< elastic cables of given unstressed lengths
   dynamic_relaxation,  ///< elastic cables, cables of constant tension and films, by a damped motion
-  film                 ///< soap films of given stress with cables
+  film,                ///< soap films of given stress with cables
+  self_stress          ///< forces in balance with each other in the shape drawn, of cables and bars
 };
 
 /// How the equations are solved; which of them a method knows is checked by the deck.

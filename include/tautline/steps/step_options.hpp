@@ -51,6 +51,9 @@ enum class Release { as_given, automatic };
 /// What is tried where Newton's method fails. Automatic: descent, as long as no equilibrium is known.
 enum class Fallback { automatic, none, descent, dynamic_relaxation };
 
+/// What holds the structure in a step: the deck's supports, or nothing, so that it floats.
+enum class Ground { deck, free };
+
 /// Random changes at the start.
 struct ScatterOptions {
   double position = 0;  ///< largest displacement of a free node, in each coordinate [m]
@@ -73,6 +76,7 @@ struct EquilibriumOptions {
   Release release = Release::as_given;
   Fallback fallback = Fallback::automatic;
   ScatterOptions scatter;
+  Ground support = Ground::deck;  ///< free: accelerated by what acts (inertia relief)
 };
 
 /// `kind: buckling`
@@ -110,8 +114,9 @@ struct TuningStepOptions {
 
 /// `kind: modal`
 struct ModalOptions {
-  int modes = 6;
+  int modes = 6;  ///< elastic ones: those of a rigid body are counted, not listed
   assembly::MassKind mass = assembly::MassKind::consistent;
+  Ground support = Ground::deck;
 };
 
 /// `kind: rod_shaping`, on a rod-umbrella
