@@ -223,6 +223,10 @@ System::NodalForces System::constraint_forces() const {
 System::NodalField System::nodal(const la::Vector& x) const {
   std::vector<double> all;
   x.gather(all);
+  return nodal(all);
+}
+
+System::NodalField System::nodal(const std::vector<double>& all) const {
   const auto sum = [&](const std::vector<Dependence>& list) {
     Vec3 value = Vec3::Zero();
     for (const auto& d : list)
