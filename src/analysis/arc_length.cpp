@@ -89,7 +89,7 @@ class Walk {
     negative_ = count_negative(problem_, workspace_);
     la::Vector q = la::Vector::like(weights_);
     problem_.load_rate(q);
-    workspace_.solver.solve(q, tangent_.x);
+    la::solve(workspace_.solver, problem_.skew_part(), q, tangent_.x);
     tangent_.lambda = 1;
     return std::isfinite(tangent_.x.norm()) && workspace_.solver.failure().empty();
   }

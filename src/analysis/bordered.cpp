@@ -28,14 +28,15 @@ namespace {
 /// The increments of one iteration by block elimination; false if there are no factors or no direction.
 bool eliminate(PathProblem& problem, Workspace& workspace, const Condition& condition, const Increment& step,
                const la::Vector& residual, Increment& change) {
-  problem.tangent(workspace.tangent);
+  problem.extrapolated_tangent(workspace.tangent);
   if (!workspace.solver.factor(workspace.tangent)) return false;
+  const la::SkewPart skew = problem.skew_part();
   la::Vector q = la::Vector::like(residual), along = la::Vector::like(residual),
              by_x = la::Vector::like(residual);
   problem.load_rate(q);
-  workspace.solver.solve(residual, change.x);
+  la::solve(workspace.solver, skew, residual, change.x);
   change.x.scale(-1);
-  workspace.solver.solve(q, along);
+  la::solve(workspace.solver, skew, q, along);
   double by_lambda = 0;
   const double g = condition.value(step.x, step.lambda, by_x, by_lambda);
   const double slope = by_lambda + by_x.dot(along);

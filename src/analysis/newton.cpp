@@ -63,17 +63,70 @@ std::string why_singular(const la::DirectSolver& solver) {
                      null == 1 ? "" : "s");
 }
 
+/// Tangents of one solve: with stresses foretold while forces are out of balance, then the true one.
+class Tangents {
+ public:
+  Tangents(NonlinearProblem& problem, Workspace& workspace, const NewtonSummary& so_far)
+      : problem_(problem), workspace_(workspace), so_far_(so_far) {}
+
+  /// @return whether the tangent has been factored
+  bool form(Stability stability) {
+    foretold_ = relative_residual(so_far_.iterations.back().norms) > near;
+    if (!foretold_) {
+      problem_.tangent(workspace_.tangent);
+      return false;
+    }
+    problem_.extrapolated_tangent(workspace_.tangent);
+    if (stability == Stability::any) return false;
+    if (!factor()) return false;
+    if (begun_with_ < 0) begun_with_ = negative();
+    if (negative() <= begun_with_) return true;
+    problem_.tangent(workspace_.tangent);
+    foretold_ = false;
+    const bool factored = factor();
+    astray_ = factored && negative() > begun_with_;
+    return factored;
+  }
+  /// Whether the solve has left, far from balance, the side of stability on which it began.
+  bool astray() const { return astray_; }
+  /// Who asks for the inertia of the factors means the true tangent's.
+  void leave_true() {
+    if (!foretold_) return;
+    problem_.tangent(workspace_.tangent);
+    factor();
+  }
+
+ private:
+  bool factor() { return workspace_.solver.factor(workspace_.tangent); }
+  int negative() const { return workspace_.solver.inertia().negative; }
+
+  static constexpr double near = 1e-6;
+  NonlinearProblem& problem_;
+  Workspace& workspace_;
+  const NewtonSummary& so_far_;
+  bool foretold_ = false, astray_ = false;
+  int begun_with_ = -1;  // negative pivots
+};
+
 }  // namespace
 
 NewtonSummary solve_newton(NonlinearProblem& problem, Workspace& workspace, const NewtonOptions& options,
-                           const IterationCallback& callback) {
+                           const IterationCallback& callback, Stability stability) {
   Judge judge(problem, options, callback);
+  Tangents tangents(problem, workspace, judge.summary);
   la::SnesCallbacks callbacks;
   callbacks.residual = [&](const la::Vector& x, la::Vector& f) { problem.residual(x, f); };
-  callbacks.tangent = [&](la::SymmetricMatrix& k) { problem.tangent(k); };
+  callbacks.tangent = [&](la::SymmetricMatrix&) { return tangents.form(stability); };
+  callbacks.correct = [&](const la::Vector& f, la::Vector& y) {
+    la::correct_for_skew_part(workspace.solver, problem.skew_part(), f, y);
+  };
   callbacks.accept = [&](const la::Vector& x) { problem.accept(x); };
   callbacks.verdict = [&](int iteration, const la::Vector& f, const la::Vector& dx) {
-    return judge(iteration, f, dx);
+    const auto verdict = judge(iteration, f, dx);
+    if (!tangents.astray() || verdict != la::Verdict::go_on) return verdict;
+    judge.summary.reason =
+        "the step leads through unstable states, out of balance, of a structure that was stable";
+    return la::Verdict::diverged;
   };
   callbacks.line_search = [&](const std::function<double(double)>& slope, double slope_0, bool stiffened) {
     return judge.step = stiffened ? search_valley(slope, slope_0) : search_step(slope, slope_0);
@@ -83,8 +136,9 @@ NewtonSummary solve_newton(NonlinearProblem& problem, Workspace& workspace, cons
   const auto outcome =
       la::run_snes(callbacks, workspace.tangent, workspace.solver, x, options.max_iterations + 1);
   NewtonSummary summary = std::move(judge.summary);
-  if (outcome == la::SnesOutcome::converged) return summary;
-  if (outcome == la::SnesOutcome::singular) {
+  if (outcome == la::SnesOutcome::converged) {
+    tangents.leave_true();
+  } else if (outcome == la::SnesOutcome::singular) {
     summary.status = NewtonStatus::singular;
     summary.reason = "the tangent stiffness is singular: " + why_singular(workspace.solver);
   } else if (outcome == la::SnesOutcome::not_a_number) {

@@ -30,8 +30,8 @@ double next_point(double reached, double step, int increments) {
 }
 
 NewtonSummary solve_point(PathProblem& problem, Workspace& workspace, const NewtonOptions& options,
-                          const IterationCallback& callback) {
-  if (problem.predict(workspace)) return solve_newton(problem, workspace, options, callback);
+                          const IterationCallback& callback, Stability stability = Stability::any) {
+  if (problem.predict(workspace)) return solve_newton(problem, workspace, options, callback, stability);
   NewtonSummary summary;
   summary.status = NewtonStatus::singular;
   summary.reason = "the tangent stiffness is singular where the supports begin to move";
@@ -107,7 +107,9 @@ class Driver {
     if (la::true_on_any_rank(interrupt_requested())) throw Interrupted();
     const double aim = next_point(reached_, step_, options_.increments);
     problem_.set_lambda(aim);
-    auto newton = solve_point(problem_, workspace_, options_, teller(aim));
+    const bool far = !lost_ && aim - reached_ > shortest;
+    auto newton =
+        solve_point(problem_, workspace_, options_, teller(aim), far ? Stability::kept : Stability::any);
     summary_.newton_iterations += newton.newton_iterations();
     const bool lost = std::exchange(lost_, false);
     if (lost && (!newton.converged() || workspace_.solver.inertia().negative > 0))
@@ -144,7 +146,7 @@ class Driver {
   /// A path becomes unstable at points where an eigenvalue vanishes. If none does, the step has come to
   /// another equilibrium, e.g. of a part turned far in one step.
   bool leapt(const std::vector<CriticalPoint>& critical, double aim) const {
-    constexpr double shortest = 1.0 / 64, vanished = 1e-3;
+    constexpr double vanished = 1e-3;
     if (negative_ < 0 || inertia_.negative <= negative_ || aim - reached_ <= shortest) return false;
     return std::none_of(critical.begin(), critical.end(),
                         [](const CriticalPoint& point) { return std::abs(point.eigenvalue) < vanished; });
@@ -264,6 +266,7 @@ class Driver {
   }
 
   static constexpr int most_critical = 8;
+  static constexpr double shortest = 1.0 / 64;  // step, which is not taken for a leap
   PathProblem& problem_;
   Workspace& workspace_;
   const NewtonOptions& options_;

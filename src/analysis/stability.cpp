@@ -119,6 +119,7 @@ std::optional<CriticalPoint> find_critical_point(PathProblem& problem, Workspace
   problem.weights(1, weights);
   count_negative(problem, workspace);
   const double at_start = softest_mode(problem, workspace.solver, weights).eigenvalue;
+  double scale = std::abs(at_start);  // the largest that was seen: a path may start at a critical point
   Search search(at_start);
   int negative_after = bracket.negative_after;
   std::optional<CriticalPoint> found;
@@ -129,7 +130,8 @@ std::optional<CriticalPoint> find_critical_point(PathProblem& problem, Workspace
     const int negative = count_negative(problem, workspace);
     SoftestMode soft = softest_mode(problem, workspace.solver, weights);
     problem.load_rate(load);
-    const double share = load_share(soft.mode, load, weights), relative = soft.eigenvalue / at_start;
+    scale = std::max(scale, std::abs(soft.eigenvalue));
+    const double share = load_share(soft.mode, load, weights), relative = soft.eigenvalue / scale;
     if (!found || std::abs(relative) < std::abs(found->eigenvalue))
       found.emplace(CriticalPoint{
           std::abs(share) > aligned ? CriticalPoint::Kind::limit : CriticalPoint::Kind::bifurcation, *lambda,

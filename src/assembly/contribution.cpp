@@ -34,6 +34,23 @@ Contribution shell(const Model& model, const State& state, const Shell& s, Want 
 }
 
 template <int N>
+Contribution extrapolated_membrane(const Model& model, const State& before, const ElementVector& motion,
+                                   const State& state, const Membrane& m) {
+  return taken(element::extrapolate_membrane<N>(
+                   model::membrane_law<N>(model, m), reference_nodes<N>(model, m.nodes),
+                   displacements<N>(before, m.nodes), motion, displacements<N>(state, m.nodes)),
+               Want::tangent);
+}
+
+template <int N>
+Contribution extrapolated_shell(const Model& model, const State& before, const ElementVector& motion,
+                                const State& state, const Shell& s) {
+  return taken(element::extrapolate_shell<N>(model.groups[s.group].shell, shell_geometry<N>(model, s),
+                                             shell_motion<N>(before, s), motion, shell_motion<N>(state, s)),
+               Want::tangent);
+}
+
+template <int N>
 Contribution pressure_on(const Model& model, const State& state, const FacetNodes& nodes, double pressure,
                          Want want) {
   Mat<3, N> x = reference_nodes<N>(model, nodes);
@@ -116,6 +133,35 @@ Contribution contribution(const Model& model, const State& state, const Spring& 
 Contribution contribution(const Model& model, const State&, const MassElement& mass, Want) {
   const int n = uses_rotations(model, mass) ? 6 : 3;
   return {ElementVector::Zero(n), ElementMatrix::Zero(n, n)};
+}
+
+Contribution extrapolated(const Model& model, const State& before, const ElementVector& motion,
+                          const State& state, const Cable& cable) {
+  if (model.groups[cable.group].kind == ElementKind::catenary)
+    return contribution(model, state, cable, Want::tangent);
+  const auto data = cable_data(model, cable);
+  return taken(element::extrapolate_cable(data.properties, data.x_ref, displacements<2>(before, cable.nodes),
+                                          motion, displacements<2>(state, cable.nodes)),
+               Want::tangent);
+}
+
+Contribution extrapolated(const Model& model, const State& before, const ElementVector& motion,
+                          const State& state, const Beam& beam) {
+  return taken(element::extrapolate_beam(beam_section(model, beam), beam_geometry(model, beam),
+                                         beam_motion(before, beam), motion, beam_motion(state, beam)),
+               Want::tangent);
+}
+
+Contribution extrapolated(const Model& model, const State& before, const ElementVector& motion,
+                          const State& state, const Membrane& m) {
+  return m.nodes.size() == 3 ? extrapolated_membrane<3>(model, before, motion, state, m)
+                             : extrapolated_membrane<4>(model, before, motion, state, m);
+}
+
+Contribution extrapolated(const Model& model, const State& before, const ElementVector& motion,
+                          const State& state, const Shell& s) {
+  return s.nodes.size() == 3 ? extrapolated_shell<3>(model, before, motion, state, s)
+                             : extrapolated_shell<4>(model, before, motion, state, s);
 }
 
 Contribution pressure_contribution(const Model& model, const State& state, const FacetNodes& nodes,

@@ -31,6 +31,17 @@ Contribution contribution(const model::Model&, const model::State&, const model:
 Contribution contribution(const model::Model&, const model::State&, const model::Spring&, element::Want);
 Contribution contribution(const model::Model&, const model::State&, const model::MassElement&, element::Want);
 
+/// Force and tangent with stresses foretold from those at `before` and the motion of the element's nodes
+/// since.
+Contribution extrapolated(const model::Model&, const model::State& before, const ElementVector& motion,
+                          const model::State&, const model::Cable&);
+Contribution extrapolated(const model::Model&, const model::State& before, const ElementVector& motion,
+                          const model::State&, const model::Beam&);
+Contribution extrapolated(const model::Model&, const model::State& before, const ElementVector& motion,
+                          const model::State&, const model::Membrane&);
+Contribution extrapolated(const model::Model&, const model::State& before, const ElementVector& motion,
+                          const model::State&, const model::Shell&);
+
 /// Follower pressure on a facet: forces on its nodes and their derivative.
 Contribution pressure_contribution(const model::Model&, const model::State&, const model::FacetNodes&,
                                    double pressure, element::Want);

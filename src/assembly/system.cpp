@@ -84,6 +84,7 @@ void System::set_state(const model::State& state) {
   state_ = committed_ = state;
   drives_.clear();
   prescribed_.clear();
+  last_motion_.reset();
   kinematics_.linearise(state_);
   restart();
 }
@@ -104,6 +105,7 @@ std::vector<double> System::strains() const {
 }
 
 OutOfBalance System::begin_stage(const Boundary& boundary) {
+  last_motion_.reset();
   relief_.reset();
   if (boundary.free) {
     refuse_motions(boundary.loads);
@@ -282,7 +284,10 @@ void System::residual_at(const model::State& state, la::Vector& f) {
 }
 
 void System::accept(const la::Vector& x) {
-  state_ = centred(kinematics_.moved(state_, increments_to(x)));
+  const auto increments = increments_to(x);
+  if (std::any_of(increments.begin(), increments.end(), [](double part) { return part != 0; }))
+    last_motion_.emplace(LastMotion{state_, nodal(increments)});
+  state_ = centred(kinematics_.moved(state_, increments));
   driven_to_ = lambda_;
   take_state();
   x.gather(origin_);
@@ -300,34 +305,9 @@ void System::commit() {
 void System::roll_back() {
   state_ = committed_;
   driven_to_ = committed_drive_;
+  last_motion_.reset();
   take_state();
   restart();
-}
-
-/// Newton's step with the tangent of the point where supports still are: from there they go their whole way
-/// in one straight line, and what hangs on them goes along.
-bool System::predict(analysis::Workspace& workspace) {
-  if (drives_.empty() || lambda_ == driven_to_) return true;
-  std::vector<double> way = drive_rates();
-  for (double& part : way) part *= lambda_ - driven_to_;
-  restart();
-  la::Vector x(map_.layout), f(map_.layout);
-  residual_at(state_, f);
-  kinematics_.linearise(state_);
-  const auto resistance = stiffness_times(way);
-  std::vector<double> right(static_cast<std::size_t>(3 * map_.layout.local));
-  f.read(right);
-  for (std::size_t i = 0; i < right.size(); ++i) {
-    const std::size_t unknown = i + static_cast<std::size_t>(3 * map_.layout.first);
-    right[i] = held()[unknown] ? 0.0 : -right[i] - resistance[unknown];
-  }
-  f.write(right);
-  tangent(workspace.tangent);
-  if (!workspace.solver.factor(workspace.tangent)) return false;
-  workspace.solver.solve(f, x);
-  accept(x);
-  restart();
-  return true;
 }
 
 la::SymmetricMatrix System::mass(MassKind kind) const {

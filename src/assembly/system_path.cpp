@@ -19,6 +19,7 @@ void System::return_to(const Kept& kept) {
   const auto& point = static_cast<const Place&>(kept);
   state_ = point.state;
   driven_to_ = point.driven_to;
+  last_motion_.reset();
   take_state();
   restart();
   apply(point.lambda);

@@ -237,20 +237,55 @@ void System::tangent(la::SymmetricMatrix& k) {
   assemble_tangent(k, [&](const auto& element) { return answer(state_, element, Want::tangent); });
 }
 
-std::vector<double> System::stiffness_times(const std::vector<double>& increment) {
+template <class Element>
+Contribution System::foretold(const Element& element) const {
+  if constexpr (!std::is_same_v<Element, model::Spring> && !std::is_same_v<Element, model::MassElement>) {
+    if (last_motion_ && branches_.empty()) {
+      const bool turns = uses_rotations(model_, element);
+      ElementVector motion((turns ? 6 : 3) * static_cast<Eigen::Index>(element.nodes.size()));
+      Eigen::Index row = 0;
+      const auto put = [&](const Vec3& part) {
+        motion.template segment<3>(row) = part;
+        row += 3;
+      };
+      for (const int node : element.nodes) {
+        put(last_motion_->increment.displacement[static_cast<std::size_t>(node)]);
+        if (turns) put(last_motion_->increment.rotation[static_cast<std::size_t>(node)]);
+      }
+      return extrapolated(model_, last_motion_->before, motion, state_, element);
+    }
+  }
+  return answer(state_, element, Want::tangent);
+}
+
+void System::extrapolated_tangent(la::SymmetricMatrix& k) {
+  assemble_tangent(k, [&](const auto& element) { return foretold(element); });
+}
+
+template <class ContributionOf>
+std::vector<double> System::product(const std::vector<double>& increment,
+                                    const ContributionOf& contribution_of) {
   kinematics_.linearise(state_);
   std::vector<double> product(origin_.size(), 0.0);
-  const auto here = [&](const auto& element) { return answer(state_, element, Want::tangent); };
-  for_each_stiffness(here, [&](const auto& nodes, bool rotations, const auto& force, const auto& values) {
-    const Expansion expansion(kinematics_, map_, nodes, rotations);
-    if (expansion.plain())
-      return expansion.add((values * expansion.template rows_of<VecX>(increment)).eval(), product);
-    const MatX& b = expansion.matrix();
-    MatX transformed = b.transpose() * values * b;
-    LinkTerms(kinematics_, map_, model_, expansion, transformed).add(nodes, rotations, force);
-    expansion.add_product(transformed, increment, product);
-  });
+  for_each_stiffness(
+      contribution_of, [&](const auto& nodes, bool rotations, const auto& force, const auto& values) {
+        const Expansion expansion(kinematics_, map_, nodes, rotations);
+        if (expansion.plain())
+          return expansion.add((values * expansion.template rows_of<VecX>(increment)).eval(), product);
+        const MatX& b = expansion.matrix();
+        MatX transformed = b.transpose() * values * b;
+        LinkTerms(kinematics_, map_, model_, expansion, transformed).add(nodes, rotations, force);
+        expansion.add_product(transformed, increment, product);
+      });
   return product;
+}
+
+std::vector<double> System::stiffness_times(const std::vector<double>& increment) {
+  return product(increment, [&](const auto& element) { return answer(state_, element, Want::tangent); });
+}
+
+std::vector<double> System::extrapolated_stiffness_times(const std::vector<double>& increment) {
+  return product(increment, [&](const auto& element) { return foretold(element); });
 }
 
 void System::hold_branches(std::vector<Branch> branches) {

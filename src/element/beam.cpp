@@ -115,6 +115,7 @@ Mat<12> rotated(const Mat<12>& local, const Mat3& Q) {
 /// What the law says of one moment of a motion, everything that force and tangent are made of.
 struct Moment {
   Corotated c;
+  Vec<7> deformation;
   std::array<SpinToRotationVector, 2> by_spin;
   detail::BeamLocalResponse law;
   Vec<7> spin_force;  ///< conjugate to the elongation and the relative spins
@@ -122,18 +123,18 @@ struct Moment {
 };
 
 Moment evaluate_moment(const BeamSection& section, const BeamGeometry& geometry, const BeamMotion& motion,
-                       Want want) {
+                       Want want, const detail::BeamStress* stress = nullptr) {
   Corotated c = corotate(geometry, motion);
   const std::array by_spin{SpinToRotationVector(c.rotations[0]), SpinToRotationVector(c.rotations[1])};
   Vec<7> deformation;
   deformation << c.chord.elongation, c.rotations[0], c.rotations[1];
   const auto law = detail::beam_local_law(section, c.chord.length_ref, geometry.free_strain,
-                                          geometry.free_curvature, deformation, want);
+                                          geometry.free_curvature, deformation, want, stress);
   Vec<7> spin_force;
   spin_force << law.force[0], by_spin[0].matrix().transpose() * law.force.segment<3>(1),
       by_spin[1].matrix().transpose() * law.force.segment<3>(4);
   const Vec<12> force = c.relative_motion.transpose() * spin_force;
-  return {c, by_spin, law, spin_force, force};
+  return {c, deformation, by_spin, law, spin_force, force};
 }
 
 /// Derivative of the spin force by elongation and relative spins: the stiffness of what the beam feels.
@@ -166,6 +167,25 @@ Mat<12> local_tangent(const Moment& m) {
   return (tangent + tangent.transpose()) / 2;
 }
 
+/// Stresses after a small motion of the ends, to first order.
+detail::BeamStress stress_after(const BeamSection& section, const BeamGeometry& geometry,
+                                const BeamMotion& motion, const Vec<12>& increment) {
+  const Moment m = evaluate_moment(section, geometry, motion, Want::force);
+  Vec<12> local;
+  for (int at = 0; at < 12; at += 3) local.segment<3>(at) = m.c.frame.transpose() * increment.segment<3>(at);
+  Vec<7> change = m.c.relative_motion * local;
+  for (int end = 0; end < 2; ++end)
+    change.segment<3>(1 + 3 * end) = (m.by_spin[end].matrix() * change.segment<3>(1 + 3 * end)).eval();
+  return m.law.stress + detail::beam_local_stress_rate(section, m.c.chord.length_ref, m.deformation, change);
+}
+
+/// Blocks of three turned from local to global axes.
+Vec<12> rotated(const Vec<12>& local, const Mat3& Q) {
+  Vec<12> global;
+  for (int at = 0; at < 12; at += 3) global.segment<3>(at) = Q * local.segment<3>(at);
+  return global;
+}
+
 BeamForces section_forces(const Vec<12>& local_force) {
   BeamForces forces;
   forces.axial = local_force[6];
@@ -195,11 +215,19 @@ BeamResponse evaluate_beam(const BeamSection& section, const BeamGeometry& geome
   const Moment m = evaluate_moment(section, geometry, motion, want);
   BeamResponse response;
   response.energy = m.law.energy;
-  for (int at = 0; at < 12; at += 3) response.force.segment<3>(at) = m.c.frame * m.force.segment<3>(at);
+  response.force = rotated(m.force, m.c.frame);
   response.forces = section_forces(m.force);
   response.frame = m.c.frame;
   if (want == Want::tangent) response.tangent = rotated(local_tangent(m), m.c.frame);
   return response;
+}
+
+Extrapolated<12> extrapolate_beam(const BeamSection& section, const BeamGeometry& geometry,
+                                  const BeamMotion& before, const Vec<12>& increment,
+                                  const BeamMotion& motion) {
+  const detail::BeamStress stress = stress_after(section, geometry, before, increment);
+  const Moment m = evaluate_moment(section, geometry, motion, Want::tangent, &stress);
+  return {rotated(m.force, m.c.frame), rotated(local_tangent(m), m.c.frame)};
 }
 
 double beam_second_variation(const BeamSection& section, const BeamGeometry& geometry,

@@ -50,6 +50,29 @@ void add_hessian(const Plane& plane, double k_c, double k_s, Mat<7>& hessian) {
   hessian(plane.b, plane.a) += (k_s - k_c) / 4;
 }
 
+using Planes = std::array<Plane, 2>;
+
+Planes bending_planes(const BeamSection& section, double length, const Vec<7>& deformation) {
+  return {bending(2, section.bending_stiffness_2, section.shear_stiffness_3, length, deformation),
+          bending(3, section.bending_stiffness_3, section.shear_stiffness_2, length, deformation)};
+}
+
+/// Of the axial strain, by the local deformations.
+Vec<7> axial_strain_gradient(const Planes& planes, double length) {
+  Vec<7> gradient = Vec<7>::Unit(0) / length;
+  for (const Plane& plane : planes) add_gradient(plane, plane.shortening_c, plane.shortening_s, gradient);
+  return gradient;
+}
+
+/// Moments of bending and torsion, without axial force.
+BeamStress moments(const Planes& bent, double torsion, double twist) {
+  BeamStress result = BeamStress::Zero();
+  result[1] = -torsion * twist;
+  result[4] = torsion * twist;
+  for (const Plane& plane : bent) add_gradient(plane, plane.stiffness_c, plane.stiffness_s, result);
+  return result;
+}
+
 /// Adds a symmetric 4x4 matrix for (deflection 1, slope 1, deflection 2, slope 2) to the places given.
 void add_plane(const Mat<4>& plane, const std::array<int, 4>& places, double slope_sign, Mat<12>& matrix) {
   const std::array<double, 4> sign{1, slope_sign, 1, slope_sign};
@@ -89,31 +112,28 @@ Mat<4> bending_mass(double mass_per_length, double rotary_inertia, bool shears, 
 }  // namespace
 
 BeamLocalResponse beam_local_law(const BeamSection& section, double length, double free_strain,
-                                 const Vec<2>& free_curvature, const Vec<7>& deformation, Want want) {
-  const std::array planes{
-      bending(2, section.bending_stiffness_2, section.shear_stiffness_3, length, deformation),
-      bending(3, section.bending_stiffness_3, section.shear_stiffness_2, length, deformation)};
+                                 const Vec<2>& free_curvature, const Vec<7>& deformation, Want want,
+                                 const BeamStress* instead) {
+  const auto planes = bending_planes(section, length, deformation);
   double strain = deformation[0] / length - free_strain;  // the part that makes force
-  Vec<7> strain_gradient = Vec<7>::Unit(0) / length;
-  for (const Plane& plane : planes) {
-    strain += quadratic(plane, plane.shortening_c, plane.shortening_s);
-    add_gradient(plane, plane.shortening_c, plane.shortening_s, strain_gradient);
-  }
-  const double axial = section.axial_stiffness * strain * length;  // d energy / d strain
+  for (const Plane& plane : planes) strain += quadratic(plane, plane.shortening_c, plane.shortening_s);
+  const Vec<7> strain_gradient = axial_strain_gradient(planes, length);
   const double torsion = section.torsion_stiffness / length;
   const double twist = deformation[4] - deformation[1];
 
   BeamLocalResponse local;
-  local.energy = (axial * strain + torsion * twist * twist) / 2;
-  local.force = axial * strain_gradient;
-  local.force[1] -= torsion * twist;
-  local.force[4] += torsion * twist;
-  for (const Plane& plane : planes) {
-    Plane bent = plane;  // what is left of the bending makes moment
-    bent.c -= free_curvature[plane.a - 2] * length / 2;
-    local.energy += quadratic(bent, plane.stiffness_c, plane.stiffness_s);
-    add_gradient(bent, plane.stiffness_c, plane.stiffness_s, local.force);
+  local.energy = (section.axial_stiffness * strain * strain * length + torsion * twist * twist) / 2;
+  auto bent = planes;  // what is left of the bending makes moment
+  for (Plane& plane : bent) {
+    plane.c -= free_curvature[plane.a - 2] * length / 2;
+    local.energy += quadratic(plane, plane.stiffness_c, plane.stiffness_s);
   }
+  local.stress = moments(bent, torsion, twist);
+  local.stress[0] = section.axial_stiffness * strain;
+  if (instead) local.stress = *instead;
+  const double axial = local.stress[0] * length;  // d energy / d strain
+  local.force = axial * strain_gradient;
+  local.force.tail<6>() += local.stress.tail<6>();
   if (want == Want::force) return local;
 
   local.tangent = section.axial_stiffness * length * strain_gradient * strain_gradient.transpose();
@@ -125,6 +145,15 @@ BeamLocalResponse beam_local_law(const BeamSection& section, double length, doub
     add_hessian(plane, plane.stiffness_c + axial * plane.shortening_c,
                 plane.stiffness_s + axial * plane.shortening_s, local.tangent);
   return local;
+}
+
+BeamStress beam_local_stress_rate(const BeamSection& section, double length, const Vec<7>& deformation,
+                                  const Vec<7>& change) {
+  const auto planes = bending_planes(section, length, deformation);
+  BeamStress rate = moments(bending_planes(section, length, change), section.torsion_stiffness / length,
+                            change[4] - change[1]);
+  rate[0] = section.axial_stiffness * axial_strain_gradient(planes, length).dot(change);
+  return rate;
 }
 
 Mat<12> beam_local_mass(const BeamSection& section, double length) {

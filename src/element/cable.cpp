@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <tautline/element/cable.hpp>
 #include <tautline/material/tension_only.hpp>
 
@@ -30,12 +32,25 @@ Mat<6> two_ended(const Mat3& block) {
   return matrix;
 }
 
+/// Tangent with a tension that need not be that of the stretch.
+Mat<6> tangent_of(const Stretched& cable, double tension) {
+  const Vec3& n = cable.chord.direction;
+  const double material = cable.law.slope / cable.unstressed_length;
+  const double geometric = tension / cable.chord.length;
+  return two_ended((material - geometric) * n * n.transpose() + geometric * Mat3::Identity());
+}
+
+Vec<6> pull(double tension, const Vec3& direction) {
+  Vec<6> force;
+  force << -tension * direction, tension * direction;
+  return force;
+}
+
 }  // namespace
 
 CableResponse evaluate_cable(const CableProperties& properties, const Mat<3, 2>& x_ref, const Vec<6>& u,
                              Want want) {
   const Stretched cable = stretch(properties, x_ref, u);
-  const Vec3& n = cable.chord.direction;
 
   CableResponse response;
   response.energy = cable.law.energy_per_length * cable.unstressed_length;
@@ -46,13 +61,20 @@ CableResponse evaluate_cable(const CableProperties& properties, const Mat<3, 2>&
     if (want == Want::tangent) response.tangent.setZero();
     return response;
   }
-  response.force << -cable.law.tension * n, cable.law.tension * n;
-  if (want == Want::tangent) {
-    const double material = cable.law.slope / cable.unstressed_length;
-    const double geometric = cable.law.tension / cable.chord.length;
-    response.tangent = two_ended((material - geometric) * n * n.transpose() + geometric * Mat3::Identity());
-  }
+  response.force = pull(cable.law.tension, cable.chord.direction);
+  if (want == Want::tangent) response.tangent = tangent_of(cable, cable.law.tension);
   return response;
+}
+
+Extrapolated<6> extrapolate_cable(const CableProperties& properties, const Mat<3, 2>& x_ref,
+                                  const Vec<6>& before, const Vec<6>& increment, const Vec<6>& u) {
+  const Stretched cable = stretch(properties, x_ref, u), last = stretch(properties, x_ref, before);
+  if (cable.law.slack) return {Vec<6>::Zero(), Mat<6>::Zero()};
+  const double elongation = last.chord.direction.dot(increment.tail<3>() - increment.head<3>());
+  const double linear =
+      properties.axial_stiffness * (last.engineering_strain + elongation / last.unstressed_length);
+  const double tension = properties.carries_compression ? linear : std::max(linear, 0.0);
+  return {pull(tension, cable.chord.direction), tangent_of(cable, tension)};
 }
 
 Vec<6> cable_force_by_unstressed_length(const CableProperties& properties, const Mat<3, 2>& x_ref,

@@ -111,6 +111,13 @@ Deformation deform(const Point<N>& p, const Mat<3, N - 1>& u) {
                p.e1.dot(h2) + p.e2.dot(h1) + h1.dot(h2))};
 }
 
+/// Change of the strain by a small change of displacements.
+template <int N>
+Vec3 strain_rate(const Point<N>& p, const Deformation& F, const Mat<3, N - 1>& change) {
+  const Vec3 h1 = change * p.gradient.row(0).transpose(), h2 = change * p.gradient.row(1).transpose();
+  return {F.a1.dot(h1), F.a2.dot(h2), F.a1.dot(h2) + F.a2.dot(h1)};
+}
+
 /// The law at a strain, relaxed where the membrane wrinkles.
 material::TensionFieldResponse respond(const MembraneLaw& law, const Vec3& green_strain) {
   if (law.wrinkling)
@@ -269,6 +276,26 @@ MembraneResponse<N> evaluate_membrane(const MembraneLaw& law, const Mat<3, N>& x
 }
 
 template <int N>
+Extrapolated<3 * N> extrapolate_membrane(const MembraneLaw& law, const Mat<3, N>& x_ref,
+                                         const Vec<3 * N>& before, const Vec<3 * N>& increment,
+                                         const Vec<3 * N>& u) {
+  const Mat<3, N - 1> last_u = relative<N>(before), step = relative<N>(increment), now_u = relative<N>(u);
+  Extrapolated<3 * N> response;
+  response.tangent.setZero();
+  Mat<3, N - 1> force = Mat<3, N - 1>::Zero();
+  for (const Point<N>& p : points_of(x_ref)) {
+    const Deformation last = deform(p, last_u), F = deform(p, now_u);
+    const auto there = respond(law, last.green_strain), here = respond(law, F.green_strain);
+    const Vec3 pk2 = there.pk2_resultant + there.tangent * strain_rate(p, last, step);
+    add_force(p, F, pk2, force);
+    add_tangent(p, F, pk2, here.tangent, response.tangent);
+  }
+  response.force = with_first_node<N>(force);
+  complete_tangent<N>(response.tangent);
+  return response;
+}
+
+template <int N>
 double membrane_area(const Mat<3, N>& x_ref) {
   double area = 0;
   for (const Point<N>& p : points_of(x_ref)) area += p.weight;
@@ -284,6 +311,10 @@ template Mat3 membrane_frame<3>(const Mat<3, 3>&);
 template Mat3 membrane_frame<4>(const Mat<3, 4>&);
 template MembraneResponse<3> evaluate_membrane<3>(const MembraneLaw&, const Mat<3, 3>&, const Vec<9>&, Want);
 template MembraneResponse<4> evaluate_membrane<4>(const MembraneLaw&, const Mat<3, 4>&, const Vec<12>&, Want);
+template Extrapolated<9> extrapolate_membrane<3>(const MembraneLaw&, const Mat<3, 3>&, const Vec<9>&,
+                                                 const Vec<9>&, const Vec<9>&);
+template Extrapolated<12> extrapolate_membrane<4>(const MembraneLaw&, const Mat<3, 4>&, const Vec<12>&,
+                                                  const Vec<12>&, const Vec<12>&);
 template double membrane_area<3>(const Mat<3, 3>&);
 template double membrane_area<4>(const Mat<3, 4>&);
 template Mat<9> membrane_mass<3>(double, const Mat<3, 3>&);

@@ -173,6 +173,13 @@ void add_geometric_tangent(const Configuration<N>& c, Mat<6 * N>& K) {
 }
 
 template <int N>
+Mat<6 * N> tangent_of(const Configuration<N>& c, const Rows<N, 6 * N>& B) {
+  Mat<6 * N> K = B.transpose() * stiffness_times<N, 6 * N>(c.stiffness, B);
+  add_geometric_tangent(c, K);
+  return (K + K.transpose()) / 2;  // what rounding left
+}
+
+template <int N>
 ShellForces centre_forces(const Configuration<N>& c, const Vec3& prestress) {
   using Table = ShellTable<N>;
   constexpr int membrane = Table::n_membrane, bending = Table::n_bending, shear = Table::n_shear;
@@ -205,12 +212,20 @@ ShellResponse<N> evaluate_shell(const ShellSection& section, const ShellGeometry
   response.energy = c.energy;
   response.force = B.transpose() * c.stress;
   response.forces = centre_forces(c, geometry.prestress);
-  if (want == Want::tangent) {
-    Mat<6 * N> K = B.transpose() * stiffness_times<N, 6 * N>(c.stiffness, B);
-    add_geometric_tangent(c, K);
-    response.tangent = (K + K.transpose()) / 2;  // what rounding left
-  }
+  if (want == Want::tangent) response.tangent = tangent_of(c, B);
   return response;
+}
+
+template <int N>
+Extrapolated<6 * N> extrapolate_shell(const ShellSection& section, const ShellGeometry<N>& geometry,
+                                      const ShellMotion<N>& before, const Vec<6 * N>& increment,
+                                      const ShellMotion<N>& motion) {
+  const Configuration<N> last = configuration(section, geometry, before);
+  const Rows<N, 1> change = strain_gradient(last) * increment;
+  Configuration<N> c = configuration(section, geometry, motion);
+  c.stress = last.stress + stiffness_times<N, 1>(last.stiffness, change);
+  const Rows<N, 6 * N> B = strain_gradient(c);
+  return {B.transpose() * c.stress, tangent_of(c, B)};
 }
 
 template <int N>
@@ -239,6 +254,10 @@ template ShellResponse<3> evaluate_shell<3>(const ShellSection&, const ShellGeom
                                             const ShellMotion<3>&, Want);
 template ShellResponse<4> evaluate_shell<4>(const ShellSection&, const ShellGeometry<4>&,
                                             const ShellMotion<4>&, Want);
+template Extrapolated<18> extrapolate_shell<3>(const ShellSection&, const ShellGeometry<3>&,
+                                               const ShellMotion<3>&, const Vec<18>&, const ShellMotion<3>&);
+template Extrapolated<24> extrapolate_shell<4>(const ShellSection&, const ShellGeometry<4>&,
+                                               const ShellMotion<4>&, const Vec<24>&, const ShellMotion<4>&);
 template double shell_area<3>(const Mat<3, 3>&);
 template double shell_area<4>(const Mat<3, 4>&);
 template Mat<18> shell_mass<3>(const ShellSection&, const Mat<3, 3>&);

@@ -60,8 +60,8 @@ PetscErrorCode form_residual(::SNES, ::Vec x, ::Vec f, void* data) {
 PetscErrorCode form_tangent(::SNES snes, ::Vec, ::Mat, ::Mat, void* data) {
   auto& context = *static_cast<Context*>(data);
   return context.guard([&] {
-    context.callbacks.tangent(context.tangent);
     context.stiffening = 0;
+    if (context.callbacks.tangent(context.tangent)) return;
     if (context.solver.factor(context.tangent) || stiffen(context)) return;
     context.singular = true;
     check(SNESSetConvergedReason(snes, SNES_DIVERGED_LINEAR_SOLVE), "SNESSetConvergedReason");
@@ -124,6 +124,10 @@ PetscErrorCode search_line(::SNESLineSearch search, void* data) {
       }
       Vector step(y);
       context.solver.solve(Vector(f), step);
+    }
+    if (context.stiffening == 0 && context.callbacks.correct) {
+      Vector step(y);
+      context.callbacks.correct(Vector(f), step);
     }
     double evaluated = -1;
     const auto slope = [&](double t) {

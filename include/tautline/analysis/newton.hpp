@@ -9,6 +9,7 @@
 
 #include <tautline/analysis/newton_options.hpp>
 #include <tautline/la/direct_solver.hpp>
+#include <tautline/la/skew_part.hpp>
 #include <tautline/la/symmetric_matrix.hpp>
 #include <tautline/la/vector.hpp>
 
@@ -34,6 +35,10 @@ class NonlinearProblem {
   virtual void residual(const la::Vector& x, la::Vector& f) = 0;
   /// Tangent at the last accepted point.
   virtual void tangent(la::SymmetricMatrix& k) = 0;
+  /// Tangent there with stresses foretold by the last increment: what Newton's method uses away from balance.
+  virtual void extrapolated_tangent(la::SymmetricMatrix& k) { tangent(k); }
+  /// What the derivative of the residual there has beside `tangent`, its symmetric part.
+  virtual la::SkewPart skew_part() { return la::SkewPart(layout()); }
   /// x becomes the point about which increments are composed.
   virtual void accept(const la::Vector& x) = 0;
   /// The accepted point becomes the origin of the next solve's unknowns.
@@ -69,8 +74,12 @@ struct Workspace {
 /// Called after each iteration with (iteration, relative residual).
 using IterationCallback = std::function<void(int, double)>;
 
+/// Whether iterates far from balance may have more unstable directions than the point where the solve began.
+/// `kept`: the solve gives up there, since it would come to some other equilibrium.
+enum class Stability { any, kept };
+
 /// @brief Solves from the problem's present point. Never throws for non-convergence. Collective.
 NewtonSummary solve_newton(NonlinearProblem& problem, Workspace& workspace, const NewtonOptions& options,
-                           const IterationCallback& callback = {});
+                           const IterationCallback& callback = {}, Stability stability = Stability::any);
 
 }  // namespace tautline::analysis

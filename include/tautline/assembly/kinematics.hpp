@@ -60,6 +60,8 @@ class Kinematics {
   /// The increment of the unknowns of one block that turns or moves its node as the nodal increment `value`.
   Vec3 unknown_of(int block, const Vec3& value) const;
 
+  /// Whether a node has a rotation of its own and no hinge angles instead.
+  bool turns_by_itself(int node) const;
   /// Number of rotations of a node that supports hold; 0 for a follower.
   int held_rotations(int node) const;
   /// Whether supports hold some rotations of a node, so that its unknowns are a rotation vector and not
@@ -98,8 +100,6 @@ class Kinematics {
 
   void resolve_constraints();
   void find_fixed_dependences();
-  /// Whether a node has a rotation of its own and no hinge angles instead.
-  bool turns_by_itself(int node) const;
   /// Part of a vector along the held axes of a block.
   Vec3 held_part(int block, const Vec3& vector) const;
   /// Rotation vector of what a charted node has turned after what is prescribed, along its free axes.

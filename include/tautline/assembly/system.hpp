@@ -53,6 +53,8 @@ struct Acting {
   Acting blended(const Acting& other, double t) const;
 };
 
+struct Contribution;
+
 /// A support that moves: unknowns and how far they go in the stage.
 struct Drive {
   int block = -1;
@@ -158,6 +160,8 @@ class System : public analysis::PathProblem {
   const la::BlockLayout& layout() const override { return map_.layout; }
   void residual(const la::Vector& x, la::Vector& f) override;
   void tangent(la::SymmetricMatrix& k) override;
+  void extrapolated_tangent(la::SymmetricMatrix& k) override;
+  la::SkewPart skew_part() override;
   void accept(const la::Vector& x) override;
   void restart() override;
   analysis::ResidualNorms norms(const la::Vector& f) const override;
@@ -284,12 +288,22 @@ class System : public analysis::PathProblem {
   std::vector<double> increments_to(const la::Vector& x) const;
   /// Residual at `state`, zero where held.
   void residual_at(const model::State& state, la::Vector& f);
+  /// The linear answer to the way that supports have still to go, and to what is out of balance.
+  bool step_linearly(analysis::Workspace& workspace);
+  std::optional<Vec3> common_turn() const;
+  bool turn_as_a_whole();
   /// What supports go while lambda grows by one, by unknown.
   std::vector<double> drive_rates() const;
   /// -d residual / d lambda with the nodes where they are, of held unknowns, too.
   std::vector<double> force_rate();
   /// K dx for an increment of all unknowns; complete in this rank's own entries.
   std::vector<double> stiffness_times(const std::vector<double>& increment);
+  std::vector<double> extrapolated_stiffness_times(const std::vector<double>& increment);
+  template <class ContributionOf>
+  std::vector<double> product(const std::vector<double>& increment, const ContributionOf& contribution_of);
+  /// What an element adds with stresses foretold by the last motion.
+  template <class Element>
+  Contribution foretold(const Element& element) const;
   std::span<const double> own_part(const std::vector<double>& all) const;
   std::vector<double> gathered(const std::vector<double>& own_complete) const;
   void apply(double lambda);
@@ -319,6 +333,12 @@ class System : public analysis::PathProblem {
   Kinematics kinematics_;  // linearised about state_
   Share share_;
   model::State state_, committed_;
+  /// The last motion accepted: from where, and what it was to first order.
+  struct LastMotion {
+    model::State before;
+    NodalField increment;
+  };
+  std::optional<LastMotion> last_motion_;
   std::vector<double> origin_;  // unknowns at which `state_` was accepted
   Acting start_, end_, now_;
   std::vector<double> start_residual_;  // of all unknowns, ramped out

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <tautline/core/types.hpp>
+#include <tautline/element/extrapolated.hpp>
 #include <tautline/element/want.hpp>
 
 namespace tautline::element {
@@ -70,6 +71,12 @@ Mat3 beam_frame(const Mat<3, 2>& x_ref, const Vec3& orientation);
 /// stay below pi. No allocation.
 BeamResponse evaluate_beam(const BeamSection& section, const BeamGeometry& geometry, const BeamMotion& motion,
                            Want want);
+
+/// Force and tangent after a motion from `before` to `motion` that was `increment` to first order, order as
+/// the tangent's.
+Extrapolated<12> extrapolate_beam(const BeamSection& section, const BeamGeometry& geometry,
+                                  const BeamMotion& before, const Vec<12>& increment,
+                                  const BeamMotion& motion);
 
 /// @brief v^T K v for a motion v of the ends, order as the tangent's [J if v is in m and rad].
 ///

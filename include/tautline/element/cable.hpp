@@ -3,6 +3,7 @@
 /// Two-node tension-only cable, or bar, of finite displacement. Theory: docs/theory/cable.md
 
 #include <tautline/core/types.hpp>
+#include <tautline/element/extrapolated.hpp>
 #include <tautline/element/want.hpp>
 
 namespace tautline::element {
@@ -35,6 +36,11 @@ struct CableResponse {
 /// @param[in] u      displacements, shape (6) [m]
 CableResponse evaluate_cable(const CableProperties& properties, const Mat<3, 2>& x_ref, const Vec<6>& u,
                              Want want);
+
+/// Force and tangent after a motion from `before` to `u` that was `increment` to first order. The tension of
+/// a cable is foretold as if it could push, and cut off at zero.
+Extrapolated<6> extrapolate_cable(const CableProperties& properties, const Mat<3, 2>& x_ref,
+                                  const Vec<6>& before, const Vec<6>& increment, const Vec<6>& u);
 
 /// d force / d L0 at fixed ends and EA, shape (6) [N/m]: the right-hand side of tie tuning. Zero when slack.
 Vec<6> cable_force_by_unstressed_length(const CableProperties& properties, const Mat<3, 2>& x_ref,

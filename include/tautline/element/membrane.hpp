@@ -3,6 +3,7 @@
 /// Three- and four-node prestressed membranes of finite displacement. Theory: docs/theory/membrane.md
 
 #include <tautline/core/types.hpp>
+#include <tautline/element/extrapolated.hpp>
 #include <tautline/element/want.hpp>
 #include <tautline/material/tension_field.hpp>
 
@@ -61,6 +62,12 @@ Mat3 membrane_frame(const Mat<3, N>& x_ref);
 template <int N>
 MembraneResponse<N> evaluate_membrane(const MembraneLaw& law, const Mat<3, N>& x_ref, const Vec<3 * N>& u,
                                       Want want);
+
+/// Force and tangent after a motion from `before` to `u` that was `increment` to first order.
+template <int N>
+Extrapolated<3 * N> extrapolate_membrane(const MembraneLaw& law, const Mat<3, N>& x_ref,
+                                         const Vec<3 * N>& before, const Vec<3 * N>& increment,
+                                         const Vec<3 * N>& u);
 
 /// Reference area [m^2].
 template <int N>

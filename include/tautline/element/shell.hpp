@@ -5,6 +5,7 @@
 #include <array>
 
 #include <tautline/core/types.hpp>
+#include <tautline/element/extrapolated.hpp>
 #include <tautline/element/want.hpp>
 
 namespace tautline::element {
@@ -61,6 +62,13 @@ Mat3 shell_frame(const Mat<3, N>& x_ref);
 template <int N>
 ShellResponse<N> evaluate_shell(const ShellSection& section, const ShellGeometry<N>& geometry,
                                 const ShellMotion<N>& motion, Want want);
+
+/// Force and tangent after a motion from `before` to `motion` that was `increment` to first order, order as
+/// the tangent's.
+template <int N>
+Extrapolated<6 * N> extrapolate_shell(const ShellSection& section, const ShellGeometry<N>& geometry,
+                                      const ShellMotion<N>& before, const Vec<6 * N>& increment,
+                                      const ShellMotion<N>& motion);
 
 /// Reference area [m^2].
 template <int N>

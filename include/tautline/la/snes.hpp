@@ -16,8 +16,10 @@ enum class Verdict { go_on, converged, diverged };
 
 struct SnesCallbacks {
   std::function<void(const Vector& x, Vector& f)> residual;
-  /// Assembles the tangent at x; x was accepted before.
-  std::function<void(SymmetricMatrix&)> tangent;
+  /// Assembles the tangent at x; x was accepted before. @return whether it has been factored, too
+  std::function<bool(SymmetricMatrix&)> tangent;
+  /// Makes of y, which solves K y = f with the tangent's factors, the step proper; none: y is.
+  std::function<void(const Vector& f, Vector& y)> correct = {};
   /// Called at the start of every iteration with the point the last one reached.
   std::function<void(const Vector& x)> accept;
   /// After each iteration (0 = the start): |increment| is 0 at the start.
