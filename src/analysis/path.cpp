@@ -70,7 +70,8 @@ class Driver {
         callback_(callback),
         last_resort_(start.last_resort),
         reached_(start.lambda),
-        lost_(start.unknown) {}
+        lost_(start.unknown),
+        from_slack_(start.from_slack) {}
 
   PathSummary run() {
     problem_.set_lambda(reached_);
@@ -109,9 +110,13 @@ class Driver {
     problem_.set_lambda(aim);
     auto newton = solve_point(problem_, workspace_, options_, teller(aim));
     summary_.newton_iterations += newton.newton_iterations();
-    const bool lost = std::exchange(lost_, false);
-    if (lost && (!newton.converged() || workspace_.solver.inertia().negative > 0))
-      newton = go_downhill(aim, std::move(newton));
+    bool lost = std::exchange(lost_, false);
+    const bool first = summary_.points.empty() && summary_.failed_attempts == 0;
+    const bool unstable = newton.converged() && workspace_.solver.inertia().negative > 0;
+    const bool slack = first && !newton.converged() && starts_slack();
+    if ((lost && (!newton.converged() || unstable)) || slack)
+      newton = go_downhill(aim, slack, std::move(newton));
+    lost = lost || slack;
     if (!newton.converged()) return shorten(aim, newton.status, newton.reason);
     const bool easy = newton.newton_iterations() <= easy_iterations;
     if (!arrive(aim, std::move(newton), !lost))
@@ -152,17 +157,31 @@ class Driver {
 
   /// From where no equilibrium is known and Newton's method found none, or an unstable one, which is taken if
   /// nothing better is found.
-  NewtonSummary go_downhill(double aim, NewtonSummary newton) {
+  /// @param slack  whether elements that only pull give way at the start; else that is tried last
+  NewtonSummary go_downhill(double aim, bool slack, NewtonSummary newton) {
     const auto there = problem_.keep();
-    problem_.roll_back();
-    approach(problem_, workspace_, aim);
-    auto descent = descend(problem_, workspace_, options_, teller(aim));
-    summary_.descent_steps += descent.steps;
-    summary_.newton_iterations += descent.newton.newton_iterations();
+    DescentSummary descent;
+    for (const bool softly : {slack, !slack}) {
+      problem_.roll_back();
+      approach(problem_, workspace_, aim);
+      descent = (softly ? descend_softly : descend)(problem_, workspace_, options_, teller(aim));
+      summary_.descent_steps += descent.steps;
+      summary_.newton_iterations += descent.newton.newton_iterations();
+      if (descent.newton.converged()) break;
+    }
     if (descent.newton.converged() || !newton.converged()) return std::move(descent.newton);
     problem_.return_to(*there);
     count_negative(problem_, workspace_);
     return newton;
+  }
+
+  /// Whether there is no path from the start, because what is slack there would fall.
+  bool starts_slack() {
+    const auto there = problem_.keep();
+    problem_.roll_back();
+    const bool result = from_slack_ && gives_way(problem_, workspace_);
+    problem_.return_to(*there);
+    return result;
   }
 
   /// From the last point of a path that gave up to an equilibrium at its end that the path does not lead to.
@@ -274,6 +293,7 @@ class Driver {
   LastResort last_resort_;
   double reached_, step_ = 1.0 / options_.increments;
   bool lost_;          // no equilibrium is known
+  bool from_slack_;    // see PathStart
   int negative_ = -1;  // at the last point; not known at the start
 };
 

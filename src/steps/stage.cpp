@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <tautline/assembly/mechanism.hpp>
+#include <tautline/assembly/slack.hpp>
 #include <tautline/core/error.hpp>
 #include <tautline/core/stopwatch.hpp>
 
@@ -135,6 +136,7 @@ analysis::PathSummary StageRunner::follow_stage(const StageOptions& stage, bool 
   analysis::PathStart start;
   start.last_resort = last_resort_of(options_.fallback);
   start.unknown = options_.fallback == Fallback::automatic && context_.is_lost(imbalance);
+  start.from_slack = options_.fallback != Fallback::none;
   if (context_.resume) {
     context_.system().return_to(context_.resume->place);
     start.unknown = false;
@@ -159,6 +161,19 @@ analysis::PathSummary StageRunner::follow_stage(const StageOptions& stage, bool 
   };
   if (walks) return walk(stage.name, callback, start);
   return follow(context_, stage.name, is_last ? options_.increments : 1, callback, start);
+}
+
+void StageRunner::look_for_mechanism(const StageOptions& stage, const analysis::PathSummary& path,
+                                     bool is_last) {
+  auto& system = context_.system();
+  if (path.reached && path.inertia.null > 0)
+    if (const auto slack = assembly::find_slack(system, context_.workspace())) {
+      if (is_last && !slack->nodes.empty()) context_.warn("slack", slack->text);
+      return;
+    }
+  if ((!path.reached && path.points.empty()) || path.inertia.null > 0)
+    if (const auto mechanism = assembly::find_mechanism(system, context_.workspace()))
+      throw ModelError(fmt::format("stage \"{}\": {}", stage.name, mechanism->text));
 }
 
 bool StageRunner::run(const StageOptions& stage, const std::vector<std::string>& loads, bool is_last) {
@@ -186,9 +201,7 @@ bool StageRunner::run(const StageOptions& stage, const std::vector<std::string>&
                     "equilibrium",
                     context_.step_name, stage.name, path.descent_steps));
   draw_critical_points(context_, path, critical_.size() - path.critical.size() + 1);
-  if ((!path.reached && path.points.empty()) || path.inertia.null > 0)
-    if (const auto mechanism = assembly::find_mechanism(system, context_.workspace()))
-      throw ModelError(fmt::format("stage \"{}\": {}", stage.name, mechanism->text));
+  look_for_mechanism(stage, path, is_last);
   entries_.push_back(entry_of(stage, start, path, seconds));
   if (path.last_resort)
     entries_.back()[key_of(path.last_resort->method)] = last_resort_json(*path.last_resort);

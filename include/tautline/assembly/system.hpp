@@ -156,6 +156,8 @@ class System : public analysis::PathProblem {
   void return_to(const Kept& kept) override;
   void load_rate(la::Vector& q) override;
   void weights(double rotation_weight, la::Vector& d) const override;
+  bool taut_stiffness(la::Vector& sums) const override;
+  double soften(double limit) override;
   /// The mean motion of nodes along a direction, as a function c . x of the unknowns' increments.
   la::Vector mean_motion(const std::vector<int>& nodes, const Vec3& direction) const;
   /// Moves the present state by an increment of the unknowns, e.g. along a mode. Collective.
@@ -304,6 +306,13 @@ class System : public analysis::PathProblem {
   mutable std::vector<double> magnitude_;  // of the last residual, all unknowns
   mutable double assembly_seconds_ = 0;
   std::vector<Branch> branches_;  // of the cables, or none: their own
+  /// What softened elements have by themselves: factors of the cables, sections of membranes by group.
+  struct Own {
+    std::vector<double> factor;
+    std::map<std::size_t, element::MembraneSection> sheet;
+    double support = 1;
+  };
+  std::optional<Own> own_;  // while some are softened
 };
 
 }  // namespace tautline::assembly
