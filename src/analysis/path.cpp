@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -70,8 +71,7 @@ class Driver {
         callback_(callback),
         last_resort_(start.last_resort),
         reached_(start.lambda),
-        lost_(start.unknown),
-        from_slack_(start.from_slack) {}
+        lost_(start.unknown) {}
 
   PathSummary run() {
     problem_.set_lambda(reached_);
@@ -155,31 +155,56 @@ class Driver {
                         [](const CriticalPoint& point) { return std::abs(point.eigenvalue) < vanished; });
   }
 
+  /// Ways to an equilibrium without a path.
+  enum class Way { soft, stiff, relaxed };
+
   /// From where no equilibrium is known and Newton's method found none, or an unstable one, which is taken if
   /// nothing better is found.
-  /// @param slack  whether elements that only pull give way at the start; else that is tried last
+  /// @param slack  whether elements that only pull give way at the start; else softness is tried last
   NewtonSummary go_downhill(double aim, bool slack, NewtonSummary newton) {
-    const auto there = problem_.keep();
-    DescentSummary descent;
-    for (const bool softly : {slack, !slack}) {
+    auto there = problem_.keep();
+    NewtonSummary found;
+    for (const Way way : slack ? std::vector{Way::soft, Way::stiff, Way::relaxed} : std::vector{Way::stiff, Way::soft}) {
       problem_.roll_back();
       approach(problem_, workspace_, aim);
-      descent = (softly ? descend_softly : descend)(problem_, workspace_, options_, teller(aim));
-      summary_.descent_steps += descent.steps;
-      summary_.newton_iterations += descent.newton.newton_iterations();
-      if (descent.newton.converged()) break;
+      found = go(way, aim);
+      summary_.newton_iterations += found.newton_iterations();
+      if (!found.converged()) continue;
+      if (is_stable()) return found;
+      if (newton.converged()) continue;
+      newton = std::move(found);
+      there = problem_.keep();
     }
-    if (descent.newton.converged() || !newton.converged()) return std::move(descent.newton);
+    if (!newton.converged()) return found;
     problem_.return_to(*there);
     count_negative(problem_, workspace_);
     return newton;
+  }
+
+  NewtonSummary go(Way way, double aim) {
+    if (way == Way::relaxed) {
+      summary_.descent_steps += relax(problem_, workspace_, {}, teller(aim)).steps;
+      return solve_newton(problem_, workspace_, options_, teller(aim));
+    }
+    auto descent = (way == Way::soft ? descend_softly : descend)(problem_, workspace_, options_, teller(aim));
+    summary_.descent_steps += descent.steps;
+    return std::move(descent.newton);
+  }
+
+  /// Whether the equilibrium just found is, within rounding. The tangent is factored afterwards.
+  bool is_stable() {
+    if (workspace_.solver.inertia().negative == 0) return true;
+    const bool result = count_firmly_negative(problem_, workspace_) == 0;
+    count_negative(problem_, workspace_);
+    return result;
   }
 
   /// Whether there is no path from the start, because what is slack there would fall.
   bool starts_slack() {
     const auto there = problem_.keep();
     problem_.roll_back();
-    const bool result = from_slack_ && gives_way(problem_, workspace_);
+    problem_.set_lambda(reached_);  // pressure that acts already has a part in the tangent
+    const bool result = gives_way(problem_, workspace_);
     problem_.return_to(*there);
     return result;
   }
@@ -293,7 +318,6 @@ class Driver {
   LastResort last_resort_;
   double reached_, step_ = 1.0 / options_.increments;
   bool lost_;          // no equilibrium is known
-  bool from_slack_;    // see PathStart
   int negative_ = -1;  // at the last point; not known at the start
 };
 

@@ -119,7 +119,7 @@ class Stiffened {
   la::Vector scale_;
 };
 
-constexpr double some = 1e-6, less = 1e-8;  // of a node's stiffness when taut
+constexpr double some = 1e-8, less = 1e-11;  // of a node's stiffness when taut
 
 /// Whether what acts has a part in a motion without resistance: then the added stiffness takes the same force,
 /// however little it is; else a force in proportion to it.
@@ -139,7 +139,7 @@ bool load_feels(System& system, Stiffened& stiffened, const std::vector<int>& no
 
 /// Those of the nodes that move in motions without resistance: there the added stiffness takes a load whole.
 std::vector<int> moving(System& system, Stiffened& stiffened, const std::vector<int>& nodes) {
-  constexpr double share = 1e-3;
+  constexpr double share = 0.1;
   std::vector<double> rest;
   const la::Vector odd = on_nodes(system, nodes, [](int node, int) -> Vec3 {
     return {1 + 0.5 * std::sin(1.7 * node), 1 + 0.5 * std::sin(2.3 * node + 1), 1 + 0.5 * std::sin(2.9 * node + 2)};

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <tautline/analysis/descent.hpp>
 #include <tautline/assembly/mechanism.hpp>
 #include <tautline/assembly/slack.hpp>
 #include <tautline/core/error.hpp>
@@ -136,7 +137,6 @@ analysis::PathSummary StageRunner::follow_stage(const StageOptions& stage, bool 
   analysis::PathStart start;
   start.last_resort = last_resort_of(options_.fallback);
   start.unknown = options_.fallback == Fallback::automatic && context_.is_lost(imbalance);
-  start.from_slack = options_.fallback != Fallback::none;
   if (context_.resume) {
     context_.system().return_to(context_.resume->place);
     start.unknown = false;
@@ -171,7 +171,9 @@ void StageRunner::look_for_mechanism(const StageOptions& stage, const analysis::
       if (is_last && !slack->nodes.empty()) context_.warn("slack", slack->text);
       return;
     }
-  if ((!path.reached && path.points.empty()) || path.inertia.null > 0)
+  const bool fell = !path.reached && path.points.empty();
+  if (fell && analysis::gives_way(system, context_.workspace())) return;  // slack, and no mechanism
+  if (fell || path.inertia.null > 0)
     if (const auto mechanism = assembly::find_mechanism(system, context_.workspace()))
       throw ModelError(fmt::format("stage \"{}\": {}", stage.name, mechanism->text));
 }

@@ -81,6 +81,7 @@ def first_equilibrium(name, directory):
     last = "  - kind: equilibrium\n    name: found\n    scatter: {position: 0, tension: 0, seed: 1}\n"
     if loads:
         last += f"    {loads.group()}\n"
+    text = text.replace("../meshes/", f"{INPUTS.parent / 'meshes'}/")
     deck.write_text(text + "\nsteps:\n" + "".join(entries[:index]) + last)
     return deck, index
 

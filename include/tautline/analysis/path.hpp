@@ -94,9 +94,6 @@ struct PathStart {
   bool unknown = false;
   std::optional<ArcPlace> arc;                ///< of a path followed by its length, taken up again
   LastResort last_resort = LastResort::none;  ///< of a path followed by load
-  /// Whether the search goes downhill from where elements that only pull are slack and would fall: no path
-  /// leads from there.
-  bool from_slack = true;
 };
 
 struct PathSummary {
