@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -111,9 +112,13 @@ class Driver {
     auto newton =
         solve_point(problem_, workspace_, options_, teller(aim), far ? Stability::kept : Stability::any);
     summary_.newton_iterations += newton.newton_iterations();
-    const bool lost = std::exchange(lost_, false);
-    if (lost && (!newton.converged() || workspace_.solver.inertia().negative > 0))
-      newton = go_downhill(aim, std::move(newton));
+    bool lost = std::exchange(lost_, false);
+    const bool first = summary_.points.empty() && summary_.failed_attempts == 0;
+    const bool unstable = newton.converged() && workspace_.solver.inertia().negative > 0;
+    const bool slack = first && !newton.converged() && starts_slack();
+    if ((lost && (!newton.converged() || unstable)) || slack)
+      newton = go_downhill(aim, slack, std::move(newton));
+    lost = lost || slack;
     if (!newton.converged()) return shorten(aim, newton.status, newton.reason);
     const bool easy = newton.newton_iterations() <= easy_iterations;
     if (!arrive(aim, std::move(newton), !lost))
@@ -152,19 +157,58 @@ class Driver {
                         [](const CriticalPoint& point) { return std::abs(point.eigenvalue) < vanished; });
   }
 
+  /// Ways to an equilibrium without a path.
+  enum class Way { soft, stiff, relaxed };
+
   /// From where no equilibrium is known and Newton's method found none, or an unstable one, which is taken if
   /// nothing better is found.
-  NewtonSummary go_downhill(double aim, NewtonSummary newton) {
-    const auto there = problem_.keep();
-    problem_.roll_back();
-    approach(problem_, workspace_, aim);
-    auto descent = descend(problem_, workspace_, options_, teller(aim));
-    summary_.descent_steps += descent.steps;
-    summary_.newton_iterations += descent.newton.newton_iterations();
-    if (descent.newton.converged() || !newton.converged()) return std::move(descent.newton);
+  /// @param slack  whether elements that only pull give way at the start; else softness is tried last
+  NewtonSummary go_downhill(double aim, bool slack, NewtonSummary newton) {
+    auto there = problem_.keep();
+    NewtonSummary found;
+    for (const Way way : slack ? std::vector{Way::soft, Way::stiff, Way::relaxed} : std::vector{Way::stiff, Way::soft}) {
+      problem_.roll_back();
+      approach(problem_, workspace_, aim);
+      found = go(way, aim);
+      summary_.newton_iterations += found.newton_iterations();
+      if (!found.converged()) continue;
+      if (is_stable()) return found;
+      if (newton.converged()) continue;
+      newton = std::move(found);
+      there = problem_.keep();
+    }
+    if (!newton.converged()) return found;
     problem_.return_to(*there);
     count_negative(problem_, workspace_);
     return newton;
+  }
+
+  NewtonSummary go(Way way, double aim) {
+    if (way == Way::relaxed) {
+      summary_.descent_steps += relax(problem_, workspace_, {}, teller(aim)).steps;
+      return solve_newton(problem_, workspace_, options_, teller(aim));
+    }
+    auto descent = (way == Way::soft ? descend_softly : descend)(problem_, workspace_, options_, teller(aim));
+    summary_.descent_steps += descent.steps;
+    return std::move(descent.newton);
+  }
+
+  /// Whether the equilibrium just found is, within rounding. The tangent is factored afterwards.
+  bool is_stable() {
+    if (workspace_.solver.inertia().negative == 0) return true;
+    const bool result = count_firmly_negative(problem_, workspace_) == 0;
+    count_negative(problem_, workspace_);
+    return result;
+  }
+
+  /// Whether there is no path from the start, because what is slack there would fall.
+  bool starts_slack() {
+    const auto there = problem_.keep();
+    problem_.roll_back();
+    problem_.set_lambda(reached_);  // pressure that acts already has a part in the tangent
+    const bool result = gives_way(problem_, workspace_);
+    problem_.return_to(*there);
+    return result;
   }
 
   /// From the last point of a path that gave up to an equilibrium at its end that the path does not lead to.

@@ -44,6 +44,7 @@ class Motion {
     since_ = 0;
     problem_.tangent(workspace_.tangent);
     mass_.write(masses());
+    if (la::Vector taut(problem_.layout()); problem_.taut_stiffness(taut)) mass_.add(safety / 2, taut);
     problem_.residual(x_, force_);
     la::Vector push = la::Vector::like(force_);
     push.copy(force_);

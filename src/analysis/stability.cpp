@@ -59,6 +59,7 @@ int count_firmly_negative(PathProblem& problem, Workspace& workspace) {
   problem.tangent(workspace.tangent);
   la::Vector scale(problem.layout());
   scale.write(workspace.tangent.absolute_row_sums_of_blocks());
+  if (la::Vector taut(problem.layout()); problem.taut_stiffness(taut)) scale.add(1, taut);
   workspace.tangent.add_diagonal(rounding, scale);
   workspace.solver.factor(workspace.tangent);
   return workspace.solver.inertia().negative;

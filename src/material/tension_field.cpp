@@ -106,6 +106,8 @@ TensionFieldResponse tension_field(const Mat3& stiffness, const Vec3& prestress,
 
   Vec3 y;
   y[0] = nearest_on_cone(e, axes.k);
+  if (!(y[0] > 1e-15 * e.norm()))  // on the border of the two, within rounding: a side that keeps its length
+    return {energy_of_slack, Vec3::Zero(), Mat3::Zero(), TensionState::slack};
   for (int i = 0; i < 2; ++i) y[i + 1] = e[i + 1] * y[0] / ((1 + axes.k[i]) * y[0] - axes.k[i] * e[0]);
   return {energy_of_slack + y.squaredNorm() / 2, axes.V * y, surface_tangent(axes, e, y),
           TensionState::wrinkled};

@@ -134,6 +134,29 @@ class Subdivider {
     return group.kind == ElementKind::beam ? options_.subdivisions : 1;
   }
 
+  /// Whether a cable hangs between its ends and touches nothing else there: one that is longer than its chord
+  /// and on no facet. Also any cable where there are but cables: nothing else could be meant to be divided.
+  bool hangs(const Cable& cable) const {
+    const auto& group = old_.groups[cable.group];
+    if (group.kind != ElementKind::cable || options_.group_subdivisions.contains(group.name) ||
+        sides_.contains(edge_of(cable.nodes[0], cable.nodes[1])))
+      return false;
+    const bool alone = sides_.empty() && old_.beams.empty();
+    return alone || cable.initial_strain < 0;
+  }
+  static bool hangs(const Beam&) { return false; }
+
+  /// Nodes along a line, shared with nothing.
+  std::vector<int> between(int from, int to) {
+    std::vector<int> result{from};
+    for (int i = 1; i < options_.subdivisions; ++i) {
+      const double t = static_cast<double>(i) / options_.subdivisions;
+      result.push_back(add_node((1 - t) * old_.nodes[from] + t * old_.nodes[to]));
+    }
+    result.push_back(to);
+    return result;
+  }
+
   int add_node(const Vec3& position) {
     new_.nodes.push_back(position);
     return static_cast<int>(new_.nodes.size()) - 1;
@@ -184,7 +207,7 @@ class Subdivider {
                    std::vector<std::vector<int>>& children) {
     for (std::size_t i = 0; i < from.size(); ++i) {
       const auto& [a, b] = from[i].nodes;
-      auto nodes = beside_side(a, b);
+      auto nodes = hangs(from[i]) ? between(a, b) : beside_side(a, b);
       if (nodes.empty()) nodes = along(a, b, parts_of(edge_of(a, b), old_.groups[from[i].group]));
       children.emplace_back();
       for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {

@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <tautline/analysis/descent.hpp>
 #include <tautline/assembly/mechanism.hpp>
+#include <tautline/assembly/slack.hpp>
 #include <tautline/core/error.hpp>
 #include <tautline/core/stopwatch.hpp>
 
@@ -161,6 +163,21 @@ analysis::PathSummary StageRunner::follow_stage(const StageOptions& stage, bool 
   return follow(context_, stage.name, is_last ? options_.increments : 1, callback, start);
 }
 
+void StageRunner::look_for_mechanism(const StageOptions& stage, const analysis::PathSummary& path,
+                                     bool is_last) {
+  auto& system = context_.system();
+  if (path.reached && path.inertia.null > 0)
+    if (const auto slack = assembly::find_slack(system, context_.workspace())) {
+      if (is_last && !slack->nodes.empty()) context_.warn("slack", slack->text);
+      return;
+    }
+  const bool fell = !path.reached && path.points.empty();
+  if (fell && analysis::gives_way(system, context_.workspace())) return;  // slack, and no mechanism
+  if (fell || path.inertia.null > 0)
+    if (const auto mechanism = assembly::find_mechanism(system, context_.workspace()))
+      throw ModelError(fmt::format("stage \"{}\": {}", stage.name, mechanism->text));
+}
+
 bool StageRunner::run(const StageOptions& stage, const std::vector<std::string>& loads, bool is_last) {
   auto& system = context_.system();
   double seconds = 0;
@@ -187,9 +204,7 @@ bool StageRunner::run(const StageOptions& stage, const std::vector<std::string>&
                     "equilibrium",
                     context_.step_name, stage.name, path.descent_steps));
   draw_critical_points(context_, path, critical_.size() - path.critical.size() + 1);
-  if ((!path.reached && path.points.empty()) || path.inertia.null > 0)
-    if (const auto mechanism = assembly::find_mechanism(system, context_.workspace()))
-      throw ModelError(fmt::format("stage \"{}\": {}", stage.name, mechanism->text));
+  look_for_mechanism(stage, path, is_last);
   entries_.push_back(entry_of(stage, start, path, seconds));
   if (path.last_resort)
     entries_.back()[key_of(path.last_resort->method)] = last_resort_json(*path.last_resort);

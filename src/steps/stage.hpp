@@ -33,6 +33,8 @@ class StageRunner {
   analysis::PathSummary walk(const std::string& what, const analysis::PathCallback& callback,
                              const analysis::PathStart& start);
   void note(const analysis::PathPoint& point);
+  /// Warns of what is slack at the stage's end. @throws ModelError for a mechanism
+  void look_for_mechanism(const StageOptions& stage, const analysis::PathSummary& path, bool is_last);
   void save_point(Checkpoint& bookmark, bool always);
   Json entry_of(const StageOptions& stage, const assembly::OutOfBalance& start,
                 const analysis::PathSummary& path, double seconds) const;

@@ -288,4 +288,22 @@ TEST(TensionField, ThermalStrainSlackensAHeldSheet) {
   EXPECT_NEAR(cooled.pk2_resultant[0], Eh * expansion / 0.7, 1e-11);
 }
 
+// A side that keeps its length beside one that grows shorter: at the border of wrinkled and slack there is no
+// tension, and no direction of it either.
+TEST(TensionField, IsSlackWhereThePrincipalStrainIsZero) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> angle(0, pi), size(-12, 0), any(0.05, 0.45);
+  for (int i = 0; i < 20000; ++i) {
+    const double nu = any(random), shortening = std::pow(10, size(random));
+    const double stiffness = 1e6 / (1 - nu * nu);
+    Mat3 D;
+    D << stiffness, nu * stiffness, 0, nu * stiffness, stiffness, 0, 0, 0, stiffness * (1 - nu) / 2;
+    const Vec3 n = along(angle(random));
+    const Vec3 strain = -shortening * Vec3(n[0], n[1], 2 * n[2]);
+    const auto found = tension_field(D, zero, zero, strain);
+    ASSERT_TRUE(found.pk2_resultant.allFinite() && found.tangent.allFinite()) << strain.transpose();
+    EXPECT_LE(found.pk2_resultant.norm(), 1e-12 * stiffness * shortening);
+  }
+}
+
 }  // namespace tautline::material

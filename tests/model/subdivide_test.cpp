@@ -371,5 +371,47 @@ TEST(Subdivision, CarriesAnInitialMotionOverFacetsLinearly) {
     EXPECT_LT((mesh.initial.displacement[i] - field(mesh.nodes[i])).norm(), 1e-15) << i;
 }
 
+TEST(Subdivide, DividesSlackCablesThatLieOnNoFacet) {
+  auto structure = two_facets();
+  structure.cables[1].initial_strain = -0.05;
+  const double whole = structure.unstressed_length(structure.cables[1]);
+  const auto mesh = subdivide(structure, parts(4));
+  const auto ties = mesh.select("tie").cables;
+  ASSERT_EQ(ties.size(), 4u);
+  for (const int i : ties)
+    EXPECT_NEAR(mesh.unstressed_length(mesh.cables[static_cast<std::size_t>(i)]), whole / 4, 1e-14);
+  EXPECT_EQ(mesh.cables[static_cast<std::size_t>(ties[0])].nodes[0], 0);
+  EXPECT_EQ(mesh.cables[static_cast<std::size_t>(ties[3])].nodes[1], 3);
+  SubdivideOptions two = parts(4);
+  two.group_subdivisions["tie"] = 2;
+  EXPECT_EQ(subdivide(structure, two).select("tie").cables.size(), 2u);
+}
+
+TEST(Subdivide, ASlackCableBesideABeamIsNotTiedToIt) {
+  auto structure = two_facets();
+  add_cable(structure, structure.find_group("tie"), 0, 4, -0.1);
+  const auto mesh = subdivide(structure, parts(3));
+  std::set<int> of_cable, of_beam;
+  for (const auto& cable : mesh.cables)
+    if (cable.parent == 2) of_cable.insert(cable.nodes.begin(), cable.nodes.end());
+  for (const auto& beam : mesh.beams)
+    if (beam.parent == 1) of_beam.insert(beam.nodes.begin(), beam.nodes.end());
+  EXPECT_EQ(of_cable.size(), 4u);
+  std::vector<int> both;
+  std::set_intersection(of_cable.begin(), of_cable.end(), of_beam.begin(), of_beam.end(), std::back_inserter(both));
+  EXPECT_EQ(both, (std::vector<int>{0, 4}));
+}
+
+TEST(Subdivide, DividesEveryCableWhereThereAreButCables) {
+  Model net;
+  net.nodes = {{0, 0, 0}, {1, 0, 0}, {2, 1, 0}};
+  const int group = add_cable_group(net, "net");
+  add_cable(net, group, 0, 1, 1e-3);
+  add_cable(net, group, 1, 2, 1e-3);
+  const auto mesh = subdivide(net, parts(3));
+  EXPECT_EQ(mesh.cables.size(), 6u);
+  EXPECT_EQ(mesh.nodes.size(), 7u);
+}
+
 }  // namespace
 }  // namespace tautline::model

@@ -1,61 +1,53 @@
 #!/usr/bin/env python3
-"""Measures from how many disturbed starts the 12 m perimeter truss finds its equilibrium.
+"""Measures from how many bad starts the program finds the right equilibrium.
 
-usage: run.py TAUTLINE WORK [--samples N] [--seed S] [--position M] [--tension T] [--subdivisions N] [--path NAME] [--jobs N]
-    TAUTLINE: the program; WORK: a directory for decks and results; NAME: direct (default), staged, automatic or relaxation
+usage: run.py TAUTLINE WORK [--samples N] [--seed S] [--position M] [--tension T] [--only NAME ...] [--jobs N]
+    TAUTLINE: the program; WORK: a directory for decks and results; NAME: structures of inputs/, chains, nets
 
-Every sample has a gap of its own between 0 and 50 mm, a displacement of its own of up to M (20 mm) in each coordinate of every free node, and a change of
-its own of up to T (0.5) of every cable's initial strain. Asked is the equilibrium of the undisturbed start with the same gap. README.md says what came out.
+Disturbed starts: structures of inputs/ up to their first equilibrium. Every coordinate of every free node is displaced at random by up to M (20 mm), every
+cable's initial strain changed by up to T (0.5) of itself; asked is the equilibrium of the undisturbed start.
+Slack starts: chains and nets of cables drawn straight, each cable up to 1.3 times as long as it is drawn, under random loads, in random orientation; asked is the
+least potential energy, which scipy looks for by itself. The energy is convex, so that there is no other equilibrium. README.md says what came out.
 """
 import argparse
 import collections
 import concurrent.futures
 import csv
 import json
+import math
 import pathlib
 import random
+import re
 import statistics
 import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-DECK = HERE.parent.parent / "inputs" / "perimeter_truss_12m.yaml"
-SAME = 1e-6  # m, a tenth of what Newton's stopping rule leaves open on a structure of this size
-PATHS = {
-    "direct": "",
-    "staged": "\n    stages:\n      - {name: frame held, hold: [front_rim, rear_rim, struts]}\n      - {name: one strut held}",
-    "automatic": "\n    release: automatic",
-    "relaxation": "\n    fallback: dynamic_relaxation",
+INPUTS = HERE.parent.parent / "inputs"
+SAME = 1e-6  # m, a tenth of what Newton's stopping rule leaves open on a structure of 10 m
+STRUCTURES = {
+    "perimeter truss": ("perimeter_truss_12m", {"reflector.gap": (0, 0.05)}),
+    "umbrella": ("umbrella_12m", {}),
+    "tent": ("tent_high_point", {}),
+    "saddle": ("tent_saddle", {}),
+    "cable roof": ("cable_roof_equal_mesh", {}),
+    "spoke wheel": ("spoke_wheel_roof", {}),
+    "guyed mast": ("guyed_mast", {}),
+    "canopy": ("canopy_on_masts", {}),
+    "cable net": ("cable_net", {}),
 }
-STEPS = """
-steps:
-  - kind: form_finding
-  - kind: mesh
-    subdivisions: SUBDIVISIONS
-  - kind: equilibrium
-    name: found
-    scatter: {position: 0, tension: 0, seed: 1}"""
+SLACK = ("chains", "nets")  # of slack_starts.py, where a miss is over the size
 
 
-def write_deck(path, subdivisions, directory):
-    """The deck of inputs/ with other steps."""
-    structure, separator, _ = DECK.read_text().partition("\nsteps:")
-    if not separator:
-        sys.exit(f"{DECK}: no steps")
-    deck = directory / "deck.yaml"
-    deck.write_text(structure + STEPS.replace("SUBDIVISIONS", str(subdivisions)) + PATHS[path] + "\n")
-    return deck
-
-
-def run(program, deck, out, **values):
-    """Runs the deck; returns its results, also of a run that did not converge."""
+def run(program, deck, out, values):
+    """Runs the deck; returns its results, or the last lines that it said where it left none."""
     command = [program, "run", str(deck), "-o", str(out), "--quiet", "--no-pictures"]
     for key, value in values.items():
-        command += ["--set", f"{key.replace('__', '.')}={value}"]
+        command += ["--set", f"{key}={value}"]
     done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-    if not (out / "results.json").exists():
-        sys.exit(f"{' '.join(command)}\n{done.stderr}")
-    return json.loads((out / "results.json").read_text())
+    if done.returncode in (0, 4):
+        return json.loads((out / "results.json").read_text())
+    return {"status": "failed", "reason": done.stderr.strip()[-300:], "steps": []}
 
 
 def places(out):
@@ -64,47 +56,96 @@ def places(out):
 
 
 def farthest(a, b):
-    return max(sum((p - q) ** 2 for p, q in zip(x, y)) ** 0.5 for x, y in zip(a, b, strict=True))
+    return max(math.dist(x, y) for x, y in zip(a, b, strict=True))
 
 
-Sample = collections.namedtuple("Sample", "index gap seed reached miss iterations descent attempts imbalance reason")
+Sample = collections.namedtuple("Sample", "name reached miss iterations descent attempts reason")
 
 
-def measure(arguments, deck, index, gap, seed):
-    """One disturbed start beside the undisturbed one."""
-    common = {"reflector__gap": gap}
-    calm, wild = arguments.work / f"{index}_calm", arguments.work / f"{index}_wild"
-    first = run(arguments.tautline, deck, calm, **common)
-    if first["status"] != "done":
-        sys.exit(f"sample {index}: the undisturbed start fails: {first['reason']}")
-    second = run(arguments.tautline, deck, wild, **common, **{
-        "steps__found__scatter__position": arguments.position, "steps__found__scatter__tension": arguments.tension, "steps__found__scatter__seed": seed})
-    stages = second["steps"][-1].get("stages", [])
-    reached = second["status"] == "done"
-    return Sample(index, gap, seed, reached, farthest(places(calm), places(wild)) if reached else float("inf"),
-                  sum(s["newton_iterations"] for s in stages), sum(s["descent_steps"] for s in stages),
-                  sum(s["failed_attempts"] for s in stages),
-                  stages[0]["step0_out_of_balance"] if stages else float("nan"), second["reason"])
+def sample_of(name, results, miss):
+    stages = results["steps"][-1].get("stages", []) if results["steps"] else []
+    return Sample(name, results["status"] == "done", miss, sum(s["newton_iterations"] for s in stages),
+                  sum(s["descent_steps"] for s in stages), sum(s["failed_attempts"] for s in stages), results.get("reason", ""))
+
+
+def first_equilibrium(name, directory):
+    """The deck of inputs/ up to its first equilibrium, in one stage under all that acts at its end. @return file, index of the step"""
+    text, separator, steps = (INPUTS / f"{name}.yaml").read_text().partition("\nsteps:\n")
+    if not separator:
+        sys.exit(f"{name}: no steps")
+    entries = re.split(r"(?m)^(?=  - kind:)", steps.split("\noutput:")[0])
+    entries = [e for e in entries if e.strip()]
+    index = next(i for i, e in enumerate(entries) if "kind: equilibrium" in e)
+    deck = directory / f"{name}.yaml"
+    loads = re.search(r"loads: .*", entries[index])
+    last = "  - kind: equilibrium\n    name: found\n    scatter: {position: 0, tension: 0, seed: 1}\n"
+    if loads:
+        last += f"    {loads.group()}\n"
+    text = text.replace("../meshes/", f"{INPUTS.parent / 'meshes'}/")
+    deck.write_text(text + "\nsteps:\n" + "".join(entries[:index]) + last)
+    return deck, index
+
+
+def disturbed(arguments, title):
+    """One calm run for each set of parameters, beside it the disturbed ones."""
+    name, parameters = STRUCTURES[title]
+    work = arguments.work / name
+    work.mkdir(exist_ok=True)
+    deck, step = first_equilibrium(name, work)
+    draw = random.Random(arguments.seed)
+
+    def measure(index, values, seed):
+        calm = work / ("calm" if not parameters else f"calm_{index}")
+        if not (calm / "nodes.csv").exists() or parameters:
+            first = run(arguments.tautline, deck, calm, values)
+            if first["status"] != "done":
+                sys.exit(f"{title}: the undisturbed start fails: {first['reason']}")
+        wild = work / f"wild_{index}"
+        scatter = f"steps.{step}.scatter."
+        results = run(arguments.tautline, deck, wild, {
+            **values, scatter + "position": arguments.position, scatter + "tension": arguments.tension, scatter + "seed": seed})
+        miss = farthest(places(calm), places(wild)) if results["status"] == "done" else math.inf
+        return sample_of(f"seed {seed} {values or ''}", results, miss)
+
+    starts = [(i, {k: draw.uniform(*v) for k, v in parameters.items()}, draw.randrange(2**31)) for i in range(arguments.samples)]
+    head = [measure(*starts[0])]  # makes the calm run that the others share
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        return head + list(pool.map(lambda start: measure(*start), starts[1:]))
+
+
+def slack(arguments, kind):
+    import slack_starts  # wants numpy and scipy
+
+    work = arguments.work / kind
+    work.mkdir(exist_ok=True)
+    draw = random.Random(f"{arguments.seed} {kind}")
+
+    def measure(index, seed):
+        start = slack_starts.make(kind, random.Random(seed))
+        deck = work / f"{index}.yaml"
+        deck.write_text(slack_starts.deck(start))
+        results = run(arguments.tautline, deck, work / str(index), {})
+        miss = slack_starts.miss(start, places(work / str(index))) if results["status"] == "done" else math.inf
+        return sample_of(f"{start.what} (seed {seed})", results, miss)
+
+    starts = [(i, draw.randrange(2**31)) for i in range(arguments.samples)]
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        return list(pool.map(lambda start: measure(*start), starts))
 
 
 def spread(values):
     return f"{min(values):.4g} / {statistics.median(values):.4g} / {max(values):.4g}"
 
 
-def report(samples):
-    same = [s for s in samples if s.reached and s.miss <= SAME]
-    print(f"same equilibrium: {len(same)} of {len(samples)} = {100 * len(same) / len(samples):.1f} %")
-    if same:
-        print(f"  farthest node from the undisturbed run, worst sample: {max(s.miss for s in same):.1e} m")
-        print(f"  Newton iterations, least / median / most: {spread([s.iterations for s in same])}")
-        print(f"  steps downhill, least / median / most: {spread([s.descent for s in same])}")
-        print(f"  attempts that failed, least / median / most: {spread([s.attempts for s in same])}")
-        print(f"  largest nodal force out of balance at the start, least / median / most: "
-              f"{spread([s.imbalance for s in same])} N")
+def report(title, samples, same):
+    good = [s for s in samples if s.reached and s.miss <= same]
+    columns = [f"{title:<16}", f"**{len(good)} of {len(samples)}**"]
+    if good:
+        columns += [f"{max(s.miss for s in good):.0e}", spread([s.iterations for s in good]), spread([s.descent for s in good])]
+    print("| " + " | ".join(columns) + " |", flush=True)
     for s in samples:
-        if s not in same:
-            told = f"another place, {s.miss:.3g} m away" if s.reached else s.reason
-            print(f"  sample {s.index} (gap {s.gap:.5f} m, seed {s.seed}): {told}")
+        if s not in good:
+            print(f"    {s.name}: " + (f"elsewhere, {s.miss:.3g} m" if s.reached else s.reason), flush=True)
 
 
 def main():
@@ -115,16 +156,17 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--position", type=float, default=0.02)
     parser.add_argument("--tension", type=float, default=0.5)
-    parser.add_argument("--subdivisions", type=int, default=2)
-    parser.add_argument("--path", choices=PATHS, default="direct")
+    parser.add_argument("--only", nargs="*", default=[*STRUCTURES, *SLACK])
     parser.add_argument("--jobs", type=int, default=1)
     arguments = parser.parse_args()
     arguments.work.mkdir(parents=True, exist_ok=True)
-    deck = write_deck(arguments.path, arguments.subdivisions, arguments.work)
-    draw = random.Random(arguments.seed)
-    starts = [(i, draw.uniform(0, 0.05), draw.randrange(2**31)) for i in range(arguments.samples)]
-    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        report(list(pool.map(lambda start: measure(arguments, deck, *start), starts)))
+    print("| start | right equilibrium | farthest node [m] | Newton iterations, least / median / most | steps downhill, least / median / most |")
+    print("|---|---|---|---|---|")
+    for title in arguments.only:
+        if title in STRUCTURES:
+            report(title, disturbed(arguments, title), SAME)
+        else:
+            report(title, slack(arguments, title), 1e-4)
 
 
 if __name__ == "__main__":

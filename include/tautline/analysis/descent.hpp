@@ -24,4 +24,18 @@ struct DescentSummary {
 DescentSummary descend(NonlinearProblem& problem, Workspace& workspace, const NewtonOptions& options,
                        const IterationCallback& callback = {});
 
+/// @brief The same from where elements that only pull are slack, or so far from rest that their stiffness
+/// hides the way: first with elements as soft as the forces out of balance, which rest soon, then with stiffer
+/// ones from there, and so on to their own stiffness. Collective.
+///
+/// Cables and sheets turn on their way to rest; a stiff one lets an end go round the other only by tiny
+/// straight steps, a soft one by large ones.
+/// @throws Interrupted if the user asked for it
+DescentSummary descend_softly(NonlinearProblem& problem, Workspace& workspace, const NewtonOptions& options,
+                              const IterationCallback& callback = {});
+
+/// Whether the present point is without resistance because elements that only pull are slack there: its
+/// tangent is singular, and is not if they were taut. Collective.
+bool gives_way(NonlinearProblem& problem, Workspace& workspace);
+
 }  // namespace tautline::analysis

@@ -46,6 +46,15 @@ class NonlinearProblem {
   virtual ResidualNorms norms(const la::Vector& f) const = 0;
   /// Largest displacement in an increment, relative to the structure's size [-].
   virtual double relative_size(const la::Vector& increment) const = 0;
+  /// What elements that only pull would add to each row's sum of stiffnesses if all were taut [N/m]: a scale
+  /// for unknowns that nothing resists yet. False if there are no such elements.
+  virtual bool taut_stiffness(la::Vector& sums) const {
+    sums.set_zero();
+    return false;
+  }
+  /// Limits the axial stiffness of elements that only pull [N]; infinity gives them their own back.
+  /// @return the largest ratio of an element's own stiffness to its limited one, 1 where the limit is none
+  virtual double soften(double /*limit*/) { return 1; }
 };
 
 struct NewtonIteration {

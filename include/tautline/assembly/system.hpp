@@ -174,6 +174,8 @@ class System : public analysis::PathProblem {
   void return_to(const Kept& kept) override;
   void load_rate(la::Vector& q) override;
   void weights(double rotation_weight, la::Vector& d) const override;
+  bool taut_stiffness(la::Vector& sums) const override;
+  double soften(double limit) override;
   /// The mean motion of nodes along a direction, as a function c . x of the unknowns' increments.
   la::Vector mean_motion(const std::vector<int>& nodes, const Vec3& direction) const;
   /// Moves the present state by an increment of the unknowns, e.g. along a mode. Collective.
@@ -351,6 +353,13 @@ class System : public analysis::PathProblem {
   mutable double assembly_seconds_ = 0;
   std::vector<Branch> branches_;           // of the cables, or none: their own
   std::unique_ptr<InertiaRelief> relief_;  // of a free structure
+  /// What softened elements have by themselves: factors of the cables, sections of membranes by group.
+  struct Own {
+    std::vector<double> factor;
+    std::map<std::size_t, element::MembraneSection> sheet;
+    double support = 1;
+  };
+  std::optional<Own> own_;  // while some are softened
 };
 
 }  // namespace tautline::assembly
