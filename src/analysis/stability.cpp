@@ -118,6 +118,7 @@ std::optional<CriticalPoint> find_critical_point(PathProblem& problem, Workspace
   la::Vector weights(problem.layout()), load(problem.layout());
   problem.weights(1, weights);
   count_negative(problem, workspace);
+  const bool regular = workspace.solver.inertia().null == 0;
   const double at_start = softest_mode(problem, workspace.solver, weights).eigenvalue;
   Search search(at_start);
   int negative_after = bracket.negative_after;
@@ -127,6 +128,10 @@ std::optional<CriticalPoint> find_critical_point(PathProblem& problem, Workspace
     const auto lambda = bracket.go(t);
     if (!lambda) break;
     const int negative = count_negative(problem, workspace);
+    // Met exactly, the first point leaves a null pivot, which the factors pass over: those of a tangent
+    // beside it have its mode.
+    if (regular && negative == bracket.negative_before && workspace.solver.inertia().null > 0)
+      count_firmly_negative(problem, workspace);
     SoftestMode soft = softest_mode(problem, workspace.solver, weights);
     problem.load_rate(load);
     const double share = load_share(soft.mode, load, weights), relative = soft.eigenvalue / at_start;
