@@ -47,7 +47,7 @@ struct Increment {
 
 /// @brief Solves from the problem's present point at `lambda` (where `step.lambda` counts from). Both
 /// right-hand sides of a block elimination go through one factorisation. Collective.
-/// @param step  in: the guess; out: where it ended
+/// @param step  in: the guess, which meets the condition; out: where it ended
 NewtonSummary solve_bordered(PathProblem& problem, Workspace& workspace, const Condition& condition,
                              double lambda, Increment& step, const NewtonOptions& options,
                              const IterationCallback& callback = {});

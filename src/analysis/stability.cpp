@@ -119,6 +119,7 @@ std::optional<CriticalPoint> find_critical_point(PathProblem& problem, Workspace
   la::Vector weights(problem.layout()), load(problem.layout());
   problem.weights(1, weights);
   count_negative(problem, workspace);
+  const bool regular = workspace.solver.inertia().null == 0;
   const double at_start = softest_mode(problem, workspace.solver, weights).eigenvalue;
   double scale = std::abs(at_start);  // the largest that was seen: a path may start at a critical point
   Search search(at_start);
@@ -129,6 +130,10 @@ std::optional<CriticalPoint> find_critical_point(PathProblem& problem, Workspace
     const auto lambda = bracket.go(t);
     if (!lambda) break;
     const int negative = count_negative(problem, workspace);
+    // Met exactly, the first point leaves a null pivot, which the factors pass over: those of a tangent
+    // beside it have its mode.
+    if (regular && negative == bracket.negative_before && workspace.solver.inertia().null > 0)
+      count_firmly_negative(problem, workspace);
     SoftestMode soft = softest_mode(problem, workspace.solver, weights);
     problem.load_rate(load);
     scale = std::max(scale, std::abs(soft.eigenvalue));

@@ -15,17 +15,17 @@ namespace {
 constexpr int max_halvings = 10;
 constexpr double first_shift = 1e-3, largest_shift = 1e3;  // of the stiffness at each node
 
-/// Strain energy of the branches less the work of the loads; of films nothing [J].
+/// What the branches' tensions have stored, less the work of the loads; of films nothing [J].
 double energy(const ElasticNet& net, const Coordinates& nodes) {
   double sum = 0;
   const Coordinates vectors = branch_vectors(net.net, nodes);
   for (int b = 0; b < vectors.rows(); ++b) {
     const double length = vectors.row(b).norm();
     const BranchForce force = branch_force(net, b, length);
-    if (net.tension.size() > 0 && !std::isnan(net.tension[b]))
-      sum += force.tension * length;
-    else
+    if (is_elastic(net, b))
       sum += 0.5 * force.tension * (length - net.unstressed_length[b]);  // slack: no tension
+    else
+      sum += (force.stiffness != 0 ? 0.5 : 1) * force.tension * length;  // a force density, or a tension
   }
   for (std::size_t i = 0; i < net.net.load.size(); ++i) sum -= net.net.load[i].dot(nodes.row(i).transpose());
   return sum;

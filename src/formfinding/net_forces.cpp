@@ -38,7 +38,7 @@ void check(const ElasticNet& net) {
   if (net.tension.size() != 0 && net.tension.size() != m)
     throw ModelError(fmt::format("the net has {} branches, but {} tensions", m, net.tension.size()));
   for (int b = 0; b < m; ++b) {
-    if (has_entry(net.tension, b) || has_entry(net.force_density, b)) continue;
+    if (!is_elastic(net, b)) continue;
     if (net.axial_stiffness.size() != m || net.unstressed_length.size() != m)
       throw ModelError(
           fmt::format("the net has {} branches, but {} axial stiffnesses and {} unstressed lengths", m,
@@ -48,6 +48,10 @@ void check(const ElasticNet& net) {
           fmt::format("the axial stiffness and unstressed length of branch {} must be positive", b + 1));
   }
   check_film(net);
+}
+
+bool is_elastic(const ElasticNet& net, int b) {
+  return !has_entry(net.tension, b) && !has_entry(net.force_density, b);
 }
 
 BranchForce branch_force(const ElasticNet& net, int b, double length) {
@@ -89,9 +93,7 @@ VecX nodal_stiffness(const ElasticNet& net, const Coordinates& nodes) {
     // A slack cable counts as taut: it may become so before the masses are set again.
     const double length = vectors.row(b).norm();
     const BranchForce force = branch_force(net, b, length);
-    const double elastic = has_entry(net.tension, b) || has_entry(net.force_density, b)
-                               ? 0
-                               : net.axial_stiffness[b] / net.unstressed_length[b];
+    const double elastic = is_elastic(net, b) ? net.axial_stiffness[b] / net.unstressed_length[b] : 0;
     const double sum = std::max(elastic, length > 0 ? force.tension / length : 0.0);
     for (const int node : net.net.branches[b]) stiffness[node] += sum;
   }

@@ -10,6 +10,9 @@ namespace tautline::formfinding {
 /// @throws ModelError unless sizes, stiffnesses and lengths make sense
 void check(const ElasticNet& net);
 
+/// Whether the branch has neither a tension nor a force density of its own.
+bool is_elastic(const ElasticNet& net, int branch);
+
 /// Tension of a branch of this length, and its derivative by the length.
 struct BranchForce {
   double tension = 0;    ///< [N]

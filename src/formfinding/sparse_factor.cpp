@@ -22,7 +22,8 @@ int SparseFactor::factorise(int size, const Entries& lower) {
 }
 
 Coordinates SparseFactor::solve(const Coordinates& right) const {
-  // All three columns in one pass over L: the factor is read from memory, the columns stay in cache.
+  // All three columns in one pass over L: the factor is read from memory, the columns stay in cache. The
+  // nested expression is L without the ones on its diagonal.
   const int n = size();
   if (n == 0) return right;
   Coordinates x = solver_.permutationP() * right;
@@ -30,14 +31,12 @@ Coordinates SparseFactor::solve(const Coordinates& right) const {
   using Iterator = Eigen::SparseMatrix<double>::InnerIterator;
   for (int j = 0; j < n; ++j) {
     const Eigen::RowVector3d xj = x.row(j);
-    for (Iterator entry(L, j); entry; ++entry)
-      if (entry.index() > j) x.row(entry.index()) -= entry.value() * xj;
+    for (Iterator entry(L, j); entry; ++entry) x.row(entry.index()) -= entry.value() * xj;
   }
   const VecX pivots = solver_.vectorD();
   for (int j = n - 1; j >= 0; --j) {
     Eigen::RowVector3d xj = x.row(j) / pivots[j];
-    for (Iterator entry(L, j); entry; ++entry)
-      if (entry.index() > j) xj -= entry.value() * x.row(entry.index());
+    for (Iterator entry(L, j); entry; ++entry) xj -= entry.value() * x.row(entry.index());
     x.row(j) = xj;
   }
   return solver_.permutationPinv() * x;

@@ -23,12 +23,12 @@ class Linearised {
       throw ModelError("the tolerance analysis needs a stable net: its tangent is not positive definite");
     by_length_ = VecX::Zero(vectors_.rows());
     for (int b = 0; b < vectors_.rows(); ++b) {
-      const double length = vectors_.row(b).norm(),
-                   L0 = net.unstressed_length.size() > 0 ? net.unstressed_length[b] : 0;
+      const double length = vectors_.row(b).norm();
       const BranchForce force = branch_force(net, b, length);
       vectors_.row(b) /= length;
       stiffness_.push_back(force.stiffness);
-      if (force.stiffness > 0) by_length_[b] = -net.axial_stiffness[b] * length / (L0 * L0);  // dT/dL0
+      if (is_elastic(net, b) && !force.slack)  // dT/dL0
+        by_length_[b] = -net.axial_stiffness[b] * length / std::pow(net.unstressed_length[b], 2);
     }
   }
 

@@ -141,6 +141,53 @@ TEST(ArcLength, TurnsOntoABranch) {
   EXPECT_NEAR(problem.point[0], 10 * problem.point[1] * std::sin(problem.point[0]), 1e-8);
 }
 
+/// On a straight path the first guess is in equilibrium wherever it is: it has to be where the path shall
+/// end.
+TEST(ArcLength, EndsExactlyOnAStraightPath) {
+  for (const double end : {0.37, 1.0, 5.3}) {
+    auto problem =
+        six_times([](double x, double lambda) { return x - 3 * lambda; }, [](double) { return 1.0; });
+    auto work = workspace();
+    auto options = steps_of(0.3);
+    options.load_factor = end;
+    const auto summary = follow_arc(problem, work, {}, options);
+    ASSERT_TRUE(summary.reached) << summary.reason;
+    EXPECT_NEAR(problem.lambda, end, 1e-14 * end);
+    EXPECT_NEAR(problem.point[0], 3 * end, 1e-13 * end);
+
+    auto watched =
+        six_times([](double x, double lambda) { return x - 3 * lambda; }, [](double) { return 1.0; });
+    options.load_factor = 10;
+    options.displacement = end;
+    const auto there = follow_arc(watched, work, {}, options,
+                                  Watch{vector_of(VecX::Unit(6, 0)), [&] { return watched.point[0]; }});
+    ASSERT_TRUE(there.reached) << there.reason;
+    EXPECT_NEAR(watched.point[0], end, 1e-13 * end);
+    EXPECT_NEAR(watched.lambda, end / 3, 1e-13 * end);
+  }
+}
+
+/// Where the first step asked for on the branch leads out of all that is defined, a shorter one is tried.
+TEST(ArcLength, TurnsOntoABranchByAShorterStepWhereTheFirstLeadsNowhere) {
+  const auto inner = column();
+  DenseProblem problem(
+      [inner](const VecX& x, double lambda) -> VecX {
+        return std::abs(x[0]) < 0.5 ? inner.gradient()(x, lambda) : VecX::Constant(6, std::nan("")).eval();
+      },
+      inner.hessian());
+  auto work = workspace();
+  auto options = steps_of(0.3);
+  options.branch = 1;
+  options.branch_step = 1;
+  options.max_points = 8;
+  options.load_factor = 1.2;
+  const auto summary = follow_arc(problem, work, {}, options);
+  ASSERT_EQ(summary.critical.size(), 1u) << summary.reason;
+  EXPECT_FALSE(mentions(summary.reason, "no branch")) << summary.reason;
+  EXPECT_GT(std::abs(problem.point[0]), 0.1);
+  EXPECT_NEAR(problem.point[0], 10 * problem.point[1] * std::sin(problem.point[0]), 1e-8);
+}
+
 TEST(ArcLength, StopsAtACriticalPointIfAsked) {
   auto problem = truss();
   auto work = workspace();

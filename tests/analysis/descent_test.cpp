@@ -65,6 +65,54 @@ TEST(Descent, IsNewtonsMethodWhereTheEnergyIsConvex) {
   EXPECT_LT((problem.point - k.ldlt().solve(load)).norm(), 1e-12 * problem.point.norm());
 }
 
+/// A valley with a steep wall behind it, which the whole step would run into: energy falls from point to
+/// point, and the point is found.
+TEST(Descent, StopsBeforeAWallThatTheWholeStepRunsInto) {
+  class Recorded : public DenseProblem {
+   public:
+    explicit Recorded(double wall)
+        : DenseProblem(
+              [wall](const VecX& x, double) -> VecX {
+                return x.array() - 1 + wall * (x.array() - 0.3).max(0).cube();
+              },
+              [wall](const VecX& x) -> MatX {
+                return (1 + 3 * wall * (x.array() - 0.3).max(0).square()).matrix().asDiagonal();
+              }),
+          wall_(wall) {}
+    void accept(const la::Vector& x) override {
+      DenseProblem::accept(x);
+      energy.push_back(
+          (0.5 * (point.array() - 1).square() + wall_ / 4 * (point.array() - 0.3).max(0).square().square())
+              .sum());
+    }
+    std::vector<double> energy;
+
+   private:
+    double wall_;
+  };
+  for (const double wall : {1e3, 1e5, 1e8}) {
+    Recorded problem(wall);
+    problem.size = 1e3;  // no step is long
+    auto work = workspace();
+    const auto summary = descend(problem, work, {});
+    ASSERT_TRUE(summary.newton.converged()) << summary.newton.reason;
+    EXPECT_LE(problem.out_of_balance(), 1e-6);
+    EXPECT_NEAR(problem.point[0], 0.3 + std::cbrt((1 - problem.point[0]) / wall), 1e-9);
+    for (std::size_t i = 1; i < problem.energy.size(); ++i)
+      EXPECT_LE(problem.energy[i], problem.energy[i - 1] * (1 + 1e-9)) << wall << " " << i;
+    EXPECT_LE(summary.steps, 20);
+  }
+}
+
+TEST(Descent, SaysSoWhereNoDampingHelps) {
+  auto problem = six_times([](double, double) { return 1.0; }, [](double) { return std::nan(""); });
+  auto work = workspace();
+  const auto summary = descend(problem, work, {});
+  EXPECT_EQ(summary.newton.status, NewtonStatus::singular);
+  EXPECT_EQ(summary.steps, 0);
+  EXPECT_EQ(problem.point.norm(), 0);
+}
+
 TEST(Descent, TellsHowFarItWentWhereNothingHolds) {
   auto problem = six_times([](double x, double) { return -x; }, [](double) { return -1.0; });
   problem.point.setConstant(0.1);

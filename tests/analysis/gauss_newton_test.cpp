@@ -150,6 +150,28 @@ TEST(SolveInverse, SaysWhereItIsStuckAndStaysThere) {
   EXPECT_EQ(problem.point, Vec<2>(-1.2, 1));
 }
 
+// A derivative that is wrong makes the changes shrink by 0.7 from one iteration to the next: with all targets
+// met they count as rounding, with targets missed they go on.
+TEST(SolveInverse, EndsWhereAllIsMetAndChangesShrinkNoMore) {
+  FunctionProblem problem;
+  problem.function = [](const VecX& p) { return VecX::Constant(1, p[0] - 1); };
+  problem.derivative = [](const VecX&) { return MatX::Constant(1, 1, 1 / 0.3); };
+  GaussNewtonOptions options;
+  options.tolerance = 2;
+  options.step_tolerance = 1e-12;
+  problem.point = VecX::Zero(1);
+  const auto met = solve_inverse(problem, VecX::Zero(1), free_box(1), options);
+  EXPECT_EQ(met.status, GaussNewtonStatus::met);
+  EXPECT_EQ(met.iterations.size(), 2u);
+  options.tolerance = 0.3;
+  problem.point = VecX::Zero(1);
+  const auto later = solve_inverse(problem, VecX::Zero(1), free_box(1), options);
+  EXPECT_EQ(later.status, GaussNewtonStatus::met);
+  // 0.7^4 = 0.24 is the first below 0.3; the one after it tells that the changes shrink no more
+  EXPECT_EQ(later.iterations.size(), 6u);
+  EXPECT_NEAR(later.parameters[0], 1 - std::pow(0.7, 5), 1e-12);
+}
+
 TEST(SolveInverse, KnowsWhatNothingMoves) {
   FunctionProblem problem;
   problem.function = [](const VecX& p) { return Vec<2>(p[0] - 4, 1); };

@@ -1,6 +1,8 @@
 #pragma once
 // A system's tangent and residual as dense arrays, whole on every rank.
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <span>
 #include <tautline/assembly/system.hpp>
@@ -59,6 +61,31 @@ inline MatX derivative_of_residual(System& system) {
     result.col(j) = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
   }
   return result;
+}
+
+/// The tangent of the present state is symmetric, and the symmetric part of the residual's derivative; held
+/// unknowns have a stiffness of their own and nothing else.
+inline void expect_tangent_is_derivative_of_residual(System& system) {
+  const MatX tangent = dense_tangent(system);
+  const MatX differences = derivative_of_residual(system);
+  MatX symmetric = (differences + differences.transpose()) / 2;
+  for (int i = 0; i < system.n_dofs(); ++i)
+    if (system.held()[static_cast<std::size_t>(i)]) {
+      symmetric.row(i).setZero();
+      symmetric.col(i).setZero();
+      symmetric(i, i) = tangent(i, i);
+      EXPECT_GT(tangent(i, i), 0);
+    }
+  EXPECT_LT((tangent - symmetric).norm(), 1e-8 * tangent.norm());
+  EXPECT_LT((tangent - tangent.transpose()).norm(), 1e-13 * tangent.norm());
+}
+
+/// What every unknown that is not held adds to a state, up to `size` metres and radians.
+inline std::vector<double> some_increments(const System& system, double size) {
+  std::vector<double> x(static_cast<std::size_t>(system.n_dofs()));
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x[i] = system.held()[i] ? 0 : size * std::sin(1.7 * static_cast<double>(i) + 0.3);
+  return x;
 }
 
 }  // namespace tautline::assembly::testing_models

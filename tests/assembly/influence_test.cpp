@@ -52,6 +52,31 @@ TEST(LengthInfluence, LeavesHeldNodesWhereTheyAre) {
   EXPECT_EQ(length_influence(system, workspace, {0, 1, 2}, {0, 2, 3}).norm(), 0);
 }
 
+/// More parameters than are solved at once, of two catenaries and many cables: each column is what its
+/// parameter does alone.
+TEST(Influence, OfManyParametersIsThatOfEach) {
+  model::Model model;
+  model.nodes = {Vec3(0, 0, 0)};
+  const int group = add_cable_group(model, "cable", 1000.0);
+  std::vector<int> cables, ends;
+  for (int i = 0; i < 70; ++i) {
+    const double angle = 0.3 * i;
+    model.nodes.emplace_back((2 + 0.01 * i) *
+                             Vec3(std::cos(angle), std::sin(angle), 0.3 * std::sin(3 * angle)));
+    add_cable(model, group, 0, i + 1, 0.01);
+    cables.push_back(i);
+    ends.push_back(i + 1);
+  }
+  System system(model);
+  solve(system, {{support(ends)}, {}});
+  analysis::Workspace workspace{system.new_matrix(), la::DirectSolver()};
+  const MatX all = length_influence(system, workspace, cables, {0});
+  for (const int cable : cables)
+    EXPECT_LT((length_influence(system, workspace, {cable}, {0}) - all.col(cable)).norm(), 1e-12 * all.norm())
+        << cable;
+  EXPECT_GT(all.colwise().norm().minCoeff(), 1e-3 * all.norm()) << "all of them move the node";
+}
+
 /// Motion of node 1 by central differences of the nonlinear solve with quantities of all cables times 1 +- h.
 Vec3 by_differences(const model::Model& model, CableQuantity quantity) {
   const double h = 1e-5;

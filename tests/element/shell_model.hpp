@@ -45,6 +45,16 @@ struct ShellModel {
   }
 };
 
+inline bool near(double a, double b) {
+  return std::abs(a - b) < 1e-6 * (1 + std::abs(b));
+}
+
+/// Symmetry about the plane normal to `axis` (0..2), for the nodes that `where` picks.
+template <int N>
+void mirror(ShellModel<N>& model, int axis, const std::function<bool(const Vec3&)>& where) {
+  model.support(where, {axis, 3 + (axis + 1) % 3, 3 + (axis + 2) % 3});
+}
+
 template <int N>
 Mat<3, N> corners(const ShellModel<N>& model, int element) {
   Mat<3, N> corner;

@@ -227,9 +227,13 @@ TEST(ConstrainedForm, JacobianIsTheDerivativeAndItsTransposeTheTranspose) {
   const Dish dish(3);
   Net net = triangular_net(3, 0.8, dish);
   net.load.assign(net.nodes.size(), Vec3(0.1, -0.2, -0.4));
-  Net partly = net, guided = net;
+  Net partly = net, otherwise = net, guided = net;
   partly.on_surface.assign(net.nodes.size(), false);
   for (std::size_t i = 0; i < net.nodes.size(); i += 2) partly.on_surface[i] = true;
+  otherwise.on_surface = partly.on_surface;
+  otherwise.on_surface.flip();
+  for (std::size_t b = 0; b < net.branches.size(); b += 2)  // it does not matter where a branch begins
+    for (Net* one : {&partly, &otherwise}) std::swap(one->branches[b][0], one->branches[b][1]);
   const int inner = static_cast<int>(net.nodes.size()) / 2;
   guided.guides = {{inner, Guide::Kind::line, Vec3(0.1, 0, 0), Vec3(1, 2, 3)},
                    {inner + 1, Guide::Kind::plane, Vec3(0, 0.7, 0), Vec3(1, -1, 3)}};
@@ -242,7 +246,7 @@ TEST(ConstrainedForm, JacobianIsTheDerivativeAndItsTransposeTheTranspose) {
                                             {Kind::reaction_z, "e", {0, 1}, {1}},
                                             {Kind::reaction_x, "f", {2}, {1}}};
   const std::vector<std::pair<const Net*, const Surface*>> cases{
-      {&net, nullptr}, {&net, &dish}, {&partly, &dish}, {&guided, nullptr}};
+      {&net, nullptr}, {&net, &dish}, {&partly, &dish}, {&otherwise, &dish}, {&guided, nullptr}};
   for (const auto& [shape, surface] : cases) {
     NetSystem system(*shape, surface);
     const auto rows_at = [&](const VecX& q) {

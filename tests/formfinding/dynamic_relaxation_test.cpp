@@ -54,6 +54,20 @@ TEST_P(EachDamping, GuidedNodeReflectsEqualTensions) {
   EXPECT_LE(result.nodes[0].norm(), 1e-7);
 }
 
+TEST_P(EachDamping, GuidedNodeStartsAtTheNearestPlaceOnItsGuide) {
+  ElasticNet net;
+  net.net = star({{-1, 1, 0}, {2, 2, 0}});
+  net.net.nodes[0] = Vec3(0.6, 5, 1);
+  net.tension = Eigen::Vector2d(3, 3);
+  DynamicRelaxationOptions options = with(GetParam());
+  options.max_iterations = 0;
+  const Vec3 along(1, 2, 2), point(7, 0, 0), off = net.net.nodes[0] - point;
+  net.net.guides = {{0, Guide::Kind::line, point, along}};
+  EXPECT_LE((relax(net, options).nodes[0] - (point + along * along.dot(off) / 9)).norm(), 1e-14);
+  net.net.guides = {{0, Guide::Kind::plane, point, along}};
+  EXPECT_LE((relax(net, options).nodes[0] - (point + off - along * along.dot(off) / 9)).norm(), 1e-14);
+}
+
 TEST_P(EachDamping, FilmWithEdgeCablesComesToRestAsTheMinimalFilm) {
   ElasticNet net;
   net.film = add_film_grid(6, net.net, 1);
@@ -106,6 +120,35 @@ TEST(ElasticNet, NewtonFindsTheLoadedPair) {
   ASSERT_TRUE(result.converged) << result.reason;
   EXPECT_LE((result.nodes[0] - Vec3(0, 0, -1.5)).norm(), 1e-10);
   EXPECT_LE(result.iterations, 15);
+}
+
+TEST(ElasticNet, NewtonFindsItFromAStartWithoutAnyTension) {
+  ElasticNet net = elastic_pair();
+  net.net.nodes[0] = Vec3::Zero();  // both slack: no stiffness at all
+  const ElasticResult result = find_elastic_equilibrium(net);
+  ASSERT_TRUE(result.converged) << result.reason;
+  EXPECT_LE((result.nodes[0] - Vec3(0, 0, -1.5)).norm(), 1e-10);
+}
+
+/// The force of whatever keeps its tension, or its force density, with the energies T L and q L^2 / 2: found
+/// from far away, where whole steps would overshoot.
+TEST(ElasticNet, NewtonFindsTensionsAndForceDensitiesFromAfar) {
+  for (const Vec3& start : {Vec3(0, 0, 3), Vec3(30, 20, 10), Vec3(-1.9, 0.1, -0.2), Vec3(0, 0, -1e-3)}) {
+    ElasticNet net = elastic_pair();
+    net.net.nodes[0] = start;
+    net.tension = Eigen::Vector2d(5, 5);
+    const ElasticResult tense = find_elastic_equilibrium(net);
+    ASSERT_TRUE(tense.converged) << start.transpose() << ": " << tense.reason;
+    EXPECT_LE((tense.nodes[0] - Vec3(0, 0, -1.5)).norm(), 1e-8) << start.transpose();
+
+    net.tension = {};
+    net.axial_stiffness = net.unstressed_length = {};
+    net.force_density = Eigen::Vector2d(2, 2);  // T / L = 5 / 2.5
+    const ElasticResult dense = find_elastic_equilibrium(net);
+    ASSERT_TRUE(dense.converged) << start.transpose() << ": " << dense.reason;
+    EXPECT_LE((dense.nodes[0] - Vec3(0, 0, -1.5)).norm(), 1e-10);
+    EXPECT_LE(dense.iterations, 1) << "linear";
+  }
 }
 
 TEST(ElasticNet, SlackCableCarriesNothing) {

@@ -118,7 +118,9 @@ TEST_P(EveryMesh, CarriesWhatIsAskedForAndRests) {
     const bool triangles = GetParam() != Cells::quadrilaterals;
     EXPECT_LE(result.out_of_balance, (triangles ? 1e-8 : 1e-4) * 30000);
     EXPECT_EQ(result.cable_tension, film.cable_tension);
-    if (triangles) EXPECT_LE(out_of_balance(film, result.nodes, result.stress, 30000), 1e-8 * 30000);
+    if (triangles) {
+      EXPECT_LE(out_of_balance(film, result.nodes, result.stress, 30000), 1e-8 * 30000);
+    }
   }
 }
 
@@ -222,8 +224,9 @@ TEST(Film, APointThatHoldsItIsNamed) {
   const bool even =
       result.converged && largest(film_unevenness(film.facets, result.stress, result.nodes)) < 0.03;
   EXPECT_FALSE(even);
-  if (!result.converged)
+  if (!result.converged) {
     EXPECT_NE(result.reason.find("single point, (0, 0, 1.5)"), std::string::npos) << result.reason;
+  }
 }
 
 TEST(Film, FacetsOfEitherOrientationAreOneFilm) {

@@ -2,12 +2,15 @@
 
 #include <cmath>
 #include <formfinding/elastic_nets.hpp>
+#include <limits>
 #include <random>
 #include <tautline/formfinding/force_density.hpp>
 #include <tautline/formfinding/tolerance.hpp>
 
 namespace tautline::formfinding {
 namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A triangular net of 10 N in equilibrium under loads, cut of cables of EA = 20 kN.
 ElasticNet cut_net(int rings) {
@@ -82,6 +85,27 @@ TEST(Tolerance, StraightCableOfEqualPieces) {
   const double expected = 1e4 * 10 / std::pow(n * 1.99, 2) * std::sqrt(5.0) * 1e-4;
   for (const double sigma : result.tension_sigma) EXPECT_NEAR(sigma, expected, 1e-10);
   EXPECT_LE(result.position_sigma[2].tail<2>().norm(), 1e-15);
+}
+
+TEST(Tolerance, LengthsOfCablesThatAreNotElasticHaveNoEffect) {
+  // A node between two cables along x: the left one elastic, the right one of a tension, then of a force
+  // density, each 10 N at a length of 2 m. Across, the node is held by both tensions.
+  ElasticNet net;
+  net.net = star({{-2, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, -1, 0}});
+  net.axial_stiffness = VecX::Constant(4, 1e4);
+  net.unstressed_length = Eigen::Vector4d(2 / 1.001, 2 / 1.001, 0.99, 0.99);
+  const double k = 1e4 / (2 / 1.001), across = 2 * (1e4 * (1 / 0.99 - 1));  // EA / L0; T / L of two
+  for (const bool density : {false, true}) {
+    (density ? net.force_density : net.tension) = Eigen::Vector4d(nan, density ? 5 : 10, nan, nan);
+    (density ? net.tension : net.force_density) = {};
+    const LengthEffect none = find_length_effect(net, Eigen::Vector4d(0, 1e-3, 0, 0));
+    EXPECT_EQ(none.displacement[0].norm(), 0);
+    EXPECT_EQ(none.tension.norm(), 0);
+    // dT/dL0 = -EA L / L0^2 at the left: the node goes by that over the stiffness along x.
+    const LengthEffect left = find_length_effect(net, Eigen::Vector4d(1e-3, 0, 0, 0));
+    const double lost = 1e4 * 2 / std::pow(2 / 1.001, 2) * 1e-3;
+    EXPECT_NEAR(left.displacement[0].x(), lost / (k + across + (density ? 5 : 0)), 1e-12);
+  }
 }
 
 TEST(Tolerance, RmsOfRandomNetsIsThatOfFullSolves) {

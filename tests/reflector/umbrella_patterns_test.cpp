@@ -1,6 +1,7 @@
 // Net patterns of the umbrella after Belov (2021), section 3.3.3: what there is, and that it can be balanced.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <reflector/tables.hpp>
@@ -9,6 +10,7 @@
 #include <tautline/formfinding/balanced.hpp>
 #include <tautline/formfinding/force_density.hpp>
 #include <tautline/reflector/umbrella.hpp>
+#include <tuple>
 
 namespace tautline::reflector {
 namespace {
@@ -141,17 +143,51 @@ TEST(UmbrellaPatterns, NoTwoCordsJoinTheSameNodes) {
   }
 }
 
-// Where columns are the cords across the rings they run in plan like the spokes or like the bisectors between
-// them.
+// The cords across the rings run in plan like the spokes, or, where they are columns, like the bisectors
+// between them.
 TEST(UmbrellaPatterns, ColumnsAreParallelToTheBisectorsOfTheSpokes) {
-  const int n = 6;
-  const auto model = make_umbrella(umbrella(rectangles, belts, n));
-  const auto nodes = cables_of(model, "front_net");
-  ASSERT_FALSE(nodes.empty());
-  for (const auto& [a, b] : nodes) {
-    const Vec3 along = model.nodes[b] - model.nodes[a];
-    EXPECT_NEAR(std::sin(n * std::atan2(along.y(), along.x())), 0, 1e-12) << a << " to " << b;
+  for (const auto& [front, group, bisect] :
+       {std::tuple{rectangles, "front_columns", true}, std::tuple{right_triangles, "front_columns", true},
+        std::tuple{rectangles, "front_net", false}}) {
+    const int n = 6;
+    const auto model = make_umbrella(umbrella(front, belts, n));
+    const auto cords = cables_of(model, group);
+    ASSERT_FALSE(cords.empty());
+    for (const auto& [a, b] : cords) {
+      const Vec3 along = model.nodes[b] - model.nodes[a];
+      const double angle = std::atan2(along.y(), along.x());  // spokes at 2 k pi / n, bisectors between
+      EXPECT_NEAR(std::cos(n * angle), bisect ? -1 : 1, 1e-12) << group << " " << a << " to " << b;
+    }
   }
+}
+
+TEST(UmbrellaPatterns, PeripheralCordsOfCoarseNetsAreStraightWhereNoConnectorPulls) {
+  const auto model = make_umbrella(umbrella(triangles, coarse_triangles));
+  std::set<int> pulled;
+  for (const auto& cord : cables_of(model, "rear_connectors")) pulled.insert(cord.begin(), cord.end());
+  std::map<int, std::vector<int>> next;  // along the peripheral cord
+  for (const char* group : {"rear_peripheral", "rear_end_peripheral"})
+    for (const auto& [a, b] : cables_of(model, group)) {
+      next[a].push_back(b);
+      next[b].push_back(a);
+    }
+  const auto& tips = model.selections.at("tips").nodes;
+  int straight = 0, bent = 0;
+  for (const auto& [node, ends] : next) {
+    if (std::find(tips.begin(), tips.end(), node) != tips.end()) continue;
+    ASSERT_EQ(ends.size(), 2u);
+    const Vec3 a = model.nodes[ends[0]] - model.nodes[node], b = model.nodes[ends[1]] - model.nodes[node];
+    const double bend = std::abs(a.x() * b.y() - a.y() * b.x()) / (a.norm() * b.norm());
+    if (pulled.count(node)) {
+      EXPECT_GT(bend, 1e-2) << node;
+      ++bent;
+    } else {
+      EXPECT_LT(bend, 1e-12) << node;
+      ++straight;
+    }
+  }
+  EXPECT_EQ(straight, 6 * (3 + 2));  // every second node, and those on the cord before its ends
+  EXPECT_EQ(bent, 6 * 2);
 }
 
 TEST(UmbrellaPatterns, ClothCoversTheLastRingWithoutGapOrOverlap) {
