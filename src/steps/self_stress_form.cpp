@@ -153,7 +153,7 @@ Form find_self_stressed(const Context& context, const FormFindingOptions& option
   result.details["forces"] = forces_json(structure, form, found);
   if (!result.converged) return result;
   if (!found.scaled)
-    result.warnings.push_back(
+    result.warnings.emplace_back(
         "no group states a tension: the state is scaled to a largest strain of 0.1 %; give one group "
         "`tension`");
   if (!found.stable) result.warnings.push_back(stability_text(form, context, found));

@@ -63,6 +63,10 @@ const std::map<std::string, Tolerance> tolerances{
     {"monitor", seven_digits},
     {"displacement", {0, 1e-10}},
     {"rotation", {0, 1e-10}},
+    // of free bodies: what balances exactly leaves rounding alone
+    {"acceleration", {1e-8, 1e-9}},
+    {"angular_acceleration", {1e-8, 1e-8}},
+    {"centre", {1e-9, 1e-10}},
     // levels of rounding
     {"rounding", a_level},
     {"rounding_moment", a_level},
