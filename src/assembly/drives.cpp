@@ -10,6 +10,7 @@
 #include <tautline/assembly/system.hpp>
 #include <tautline/core/error.hpp>
 #include <tautline/core/rotation.hpp>
+#include <tautline/model/names.hpp>
 
 namespace tautline::assembly {
 
@@ -65,9 +66,9 @@ void System::find_drives(const Boundary& boundary) {
       found.way[c] = 0;
       if (std::abs(wish[c]) > 1e-12 * target.value.norm())
         throw ModelError(fmt::format(
-            "load \"{}\" moves node {} in a direction that no support holds: only a support can be moved, so "
+            "load \"{}\" moves {} in a direction that no support holds: only a support can be moved, so "
             "add that direction to a support of the node",
-            target.load, node + 1));
+            target.load, model::node_in_group(model_, node)));
     }
     if (!found.way.isZero(0)) drives_.push_back(found);
   };

@@ -8,6 +8,7 @@
 
 #include <tautline/core/error.hpp>
 #include <tautline/core/rotation.hpp>
+#include <tautline/model/names.hpp>
 
 namespace tautline::assembly {
 
@@ -47,9 +48,9 @@ class ConstraintSolver {
 
   static int key(const Term& term) { return 3 * term.node + term.component; }
 
-  [[noreturn]] static void refuse(const model::LinearConstraint& constraint, int node, const char* why) {
-    throw ModelError(
-        fmt::format("{}a linear constraint: node {} {}", model::prefix(constraint.where), node + 1, why));
+  [[noreturn]] void refuse(const model::LinearConstraint& constraint, int node, const char* why) const {
+    throw ModelError(fmt::format("{}a linear constraint: {} {}", model::prefix(constraint.where),
+                                 model::node_at(model_, node), why));
   }
 
   int leader_at_its_place(int node, const model::LinearConstraint& constraint) const {
@@ -193,9 +194,9 @@ void Kinematics::hold(const std::vector<model::Support>& supports, const std::se
     const int block = map_->displacement_block[first.node];
     if (held_[3 * block + first.component] || frame_[block] != Mat3::Identity())
       throw ModelError(fmt::format(
-          "{}node {} is held by a support in a direction that follows from a linear constraint: write the "
+          "{}{} is held by a support in a direction that follows from a linear constraint: write the "
           "constraint with another node first, or hold the others",
-          model::prefix(model_->constraints[i].where), first.node + 1));
+          model::prefix(model_->constraints[i].where), model::node_at(*model_, first.node)));
     held_[3 * block + first.component] = true;
   }
   for (std::size_t node = 0; node < plain_.size(); ++node) {

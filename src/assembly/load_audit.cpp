@@ -8,6 +8,7 @@
 
 #include <tautline/core/error.hpp>
 #include <tautline/model/element_data.hpp>
+#include <tautline/model/names.hpp>
 
 #include "assembly/contribution.hpp"
 #include "assembly/expansion.hpp"
@@ -274,9 +275,10 @@ void System::audit_loads(const Boundary& boundary, const std::vector<double>& st
   }
 }
 
-void check_motions(const Boundary& boundary, const DofMap& map, const Kinematics& kinematics) {
-  const auto refuse = [](const Load& load, int node, const char* why) {
-    throw ModelError(fmt::format("{} moves node {}, {}", load.title(), node + 1, why));
+void check_motions(const Model& model, const Boundary& boundary, const DofMap& map,
+                   const Kinematics& kinematics) {
+  const auto refuse = [&](const Load& load, int node, const char* why) {
+    throw ModelError(fmt::format("{} moves {}, {}", load.title(), model::node_in_group(model, node), why));
   };
   const auto check = [&](const Load& load, int node, int block, const Vec3& motion) {
     const auto& held = kinematics.held();

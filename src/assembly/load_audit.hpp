@@ -30,6 +30,7 @@ void add_definition(const model::Model& model, const std::vector<double>& strain
                     LoadSum& sum);
 
 /// @throws ModelError for imposed motions of what no support holds but something else leads
-void check_motions(const Boundary& boundary, const DofMap& map, const Kinematics& kinematics);
+void check_motions(const model::Model& model, const Boundary& boundary, const DofMap& map,
+                   const Kinematics& kinematics);
 
 }  // namespace tautline::assembly

@@ -9,6 +9,7 @@
 #include <tautline/assembly/system.hpp>
 #include <tautline/core/error.hpp>
 #include <tautline/model/element_data.hpp>
+#include <tautline/model/names.hpp>
 
 #include "assembly/contribution.hpp"
 
@@ -122,8 +123,8 @@ void add_temperature(const Model& model, const std::vector<Element>& elements,
     const auto& nodes = elements[static_cast<std::size_t>(i)].nodes;
     const double mean = mean_over(load.temperature_field, model, nodes);
     if (!std::isfinite(mean))
-      throw ModelError(fmt::format("{}: temperature_field has no value within the element at node {}",
-                                   load.title(), *std::begin(nodes) + 1));
+      throw ModelError(fmt::format("{}: temperature_field has no value within the element at {}",
+                                   load.title(), model::node_in_group(model, *std::begin(nodes))));
     change += mean;
   }
 }

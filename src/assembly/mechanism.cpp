@@ -7,35 +7,98 @@
 #include <fmt/format.h>
 
 #include <tautline/core/text.hpp>
+#include <tautline/model/names.hpp>
 
 namespace tautline::assembly {
 
 namespace {
 
-constexpr int rounds = 8;       // of inverse iteration
-constexpr double soft = 1e-11;  // stiffness below this part of the largest counts as none
+/// @brief The softest motion of a system and its stiffness, by inverse iteration about a small shift.
+///
+/// Stiffness is x^T K x over x^T D x, where D holds for each node the largest sum of |K| over a row of its
+/// block: a number that changes with no unit and no axes. It is summed element by element, so that it keeps
+/// its digits far below the rounding of K. Theory: docs/theory/newton.md#mechanisms
+class SoftestMotion {
+ public:
+  static constexpr double null = 1e-17;  ///< stiffness below which counts as none
 
-/// The softest motion of `tangent`, by inverse iteration on K + sigma I, and its stiffness.
-std::pair<la::Vector, double> softest_motion(const la::SymmetricMatrix& tangent,
-                                             const la::BlockLayout& layout) {
-  const double sigma = 0.01 * soft * tangent.norm_of_diagonal();
-  const auto shifted = tangent.shifted(sigma);
-  la::DirectSolver solver;
-  la::Vector x(layout), y(layout);
-  std::vector<double> start(static_cast<std::size_t>(3 * layout.local));
-  for (std::size_t i = 0; i < start.size(); ++i)
-    start[i] = 1 + 0.5 * std::sin(1.7 * static_cast<double>(i + 3 * layout.first));
-  x.write(start);
-  if (!solver.factor(shifted)) return {std::move(x), 0};
-  for (int i = 0; i < rounds; ++i) {
-    solver.solve(x, y);
-    const double length = y.norm();
-    y.read(start);
-    for (double& value : start) value /= length;
-    x.write(start);
+  SoftestMotion(System& system, const la::SymmetricMatrix& tangent)
+      : system_(system), weight_(system.layout()), motion_(system.layout()), next_(system.layout()) {
+    auto sums = tangent.absolute_row_sums_of_blocks();
+    weight_.write(sums);
+    const double size = weight_.norm();
+    for (double& sum : sums)
+      if (sum < 1e-200 * size) sum = size;  // what nothing resists at all
+    weight_.write(sums);
+    begin();
+    auto shifted = tangent.shifted(0);
+    shifted.add_diagonal(shift, weight_);
+    if (!solver_.factor(shifted)) return;
+    for (int i = 0; i < most_rounds; ++i) {
+      const double last = stiffness_;
+      advance();
+      if (stiffness_ <= null || (i > 3 && std::abs(stiffness_ - last) <= 1e-3 * stiffness_)) return;
+    }
   }
-  tangent.multiply(x, y);
-  return {std::move(x), std::abs(x.dot(y))};
+
+  const la::Vector& motion() const { return motion_; }
+  bool is_resisted() const { return stiffness_ > null; }
+
+ private:
+  static constexpr double shift = 1e-12;  // above the pivots that MUMPS takes for null
+  static constexpr int most_rounds = 40;
+
+  void begin() {
+    const auto& layout = system_.layout();
+    std::vector<double> start(static_cast<std::size_t>(3 * layout.local));
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      const auto unknown = i + static_cast<std::size_t>(3 * layout.first);
+      start[i] = system_.held()[unknown] ? 0 : 1 + 0.5 * std::sin(1.7 * static_cast<double>(unknown));
+    }
+    motion_.write(start);
+  }
+
+  void advance() {
+    motion_.multiply_entries(weight_);
+    solver_.solve(motion_, next_);
+    motion_.copy(next_);
+    next_.multiply_entries(weight_);
+    motion_.scale(1 / std::sqrt(motion_.dot(next_)));
+    stiffness_ = std::abs(system_.second_variation(motion_));
+  }
+
+  System& system_;
+  la::DirectSolver solver_;
+  la::Vector weight_, motion_, next_;
+  double stiffness_ = 0;
+};
+
+/// The model with a taut cable beside every member and side of a facet: what it can do without resistance
+/// changes no distance between nodes that an element joins.
+model::Model tightened(model::Model model) {
+  constexpr double strain = 1;
+  double stiffness = 0;
+  for (const auto& cable : model.cables) stiffness = std::max(stiffness, model.axial_stiffness(cable));
+  for (const auto& group : model.groups)
+    stiffness = std::max({stiffness, group.beam.axial_stiffness, group.membrane.tension_stiffness,
+                          group.shell.young_modulus * group.shell.thickness});
+  model.initial = {};
+  const int group = static_cast<int>(model.groups.size());
+  auto& cords = model.groups.emplace_back();
+  cords.name = "cords";
+  cords.kind = model::ElementKind::cable;
+  cords.cable.axial_stiffness = stiffness > 0 ? stiffness : 1;
+  std::vector<model::Cable> added;
+  const auto join_ends = [&](const auto& nodes) {
+    for (int k = 0, n = static_cast<int>(nodes.size()); k < (n > 2 ? n : 1); ++k)
+      added.push_back({{nodes[k], nodes[(k + 1) % n]}, group, strain});
+  };
+  for (const auto& cable : model.cables) join_ends(cable.nodes);
+  for (const auto& beam : model.beams) join_ends(beam.nodes);
+  for (const auto& membrane : model.membranes) join_ends(membrane.nodes);
+  for (const auto& shell : model.shells) join_ends(shell.nodes);
+  model.cables.insert(model.cables.end(), added.begin(), added.end());
+  return model;
 }
 
 std::string direction_name(const Vec3& direction) {
@@ -87,10 +150,10 @@ std::string likely_cause(const model::Model& model, int node, bool rotation) {
 
 std::optional<Mechanism> find_mechanism(System& system, analysis::Workspace& workspace) {
   system.tangent(workspace.tangent);
-  const auto [motion, stiffness] = softest_motion(workspace.tangent, system.layout());
-  if (stiffness > soft * workspace.tangent.norm_of_diagonal()) return std::nullopt;
+  const SoftestMotion softest(system, workspace.tangent);
+  if (softest.is_resisted()) return std::nullopt;
   const auto& model = system.model();
-  const auto field = system.nodal(motion);
+  const auto field = system.nodal(softest.motion());
   const auto amplitude = [&](int node) {
     return std::max(field.displacement[node].norm(), field.rotation[node].norm());
   };
@@ -106,15 +169,19 @@ std::optional<Mechanism> find_mechanism(System& system, analysis::Workspace& wor
   mechanism.rotation = field.rotation[first].norm() > field.displacement[first].norm();
   mechanism.direction = (mechanism.rotation ? field.rotation[first] : field.displacement[first]).normalized();
   std::vector<std::string> names;
-  for (const int node : mechanism.nodes) {
-    const Vec3& at = model.nodes[node];
-    names.push_back(fmt::format("{} at ({:.4g}, {:.4g}, {:.4g})", node + 1, at.x(), at.y(), at.z()));
-  }
-  mechanism.text = fmt::format(
-      "the structure can move without resistance: node{} {} {} {}; {}", names.size() == 1 ? "" : "s",
-      join(names, ", "), mechanism.rotation ? "turning about" : "moving along",
-      direction_name(mechanism.direction), likely_cause(model, first, mechanism.rotation));
+  for (const int node : mechanism.nodes) names.push_back(model::node_in_group(model, node));
+  mechanism.motion =
+      fmt::format("the structure can move without resistance: {} {} {}", join(names, ", "),
+                  mechanism.rotation ? "turning about" : "moving along", direction_name(mechanism.direction));
+  mechanism.text = mechanism.motion + "; " + likely_cause(model, first, mechanism.rotation);
   return mechanism;
+}
+
+std::optional<Mechanism> find_loose_part(const model::Model& model, const Boundary& boundary) {
+  System system(tightened(model));
+  analysis::Workspace workspace{system.new_matrix(), la::DirectSolver()};
+  system.begin_stage({boundary.supports, {}});
+  return find_mechanism(system, workspace);
 }
 
 }  // namespace tautline::assembly

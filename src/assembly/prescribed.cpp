@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <tautline/assembly/system.hpp>
+#include <tautline/model/names.hpp>
 
 namespace tautline::assembly {
 
@@ -38,8 +39,8 @@ void System::check_prescribed() const {
       const double off = std::abs(kinematics_.frame(block).col(c).dot(miss));
       if (off > tolerance * (size_ + motion.from.norm() + motion.to.norm()))
         throw std::logic_error(fmt::format(
-            "load \"{}\" moves node {}, which is {:.3g} m from where the load puts it at lambda = {:.6g}",
-            motion.load, node + 1, off, lambda_));
+            "load \"{}\" moves {}, which is {:.3g} m from where the load puts it at lambda = {:.6g}",
+            motion.load, model::node_at(model_, node), off, lambda_));
     }
   }
 }

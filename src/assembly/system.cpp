@@ -119,7 +119,7 @@ OutOfBalance System::begin_stage(const Boundary& boundary) {
   end_ = acting(boundary, wanted_strain_.value_or(start_.strain));
   wanted_strain_.reset();
   audit_loads(boundary, end_.strain);
-  check_motions(boundary, map_, kinematics_);
+  check_motions(model_, boundary, map_, kinematics_);
   find_drives(boundary);
   note_prescribed(boundary);
   driven_to_ = committed_drive_ = 0;

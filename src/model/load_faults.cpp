@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <tautline/model/names.hpp>
+
 namespace tautline::model::detail {
 
 namespace {
@@ -64,10 +66,7 @@ class LoadCheck {
     faults_.push_back(fmt::format("{}: {}", load.title(), what));
   }
 
-  std::string place(int node) const {
-    const Vec3& x = model_.nodes[node];
-    return fmt::format("node {} at ({:.4g}, {:.4g}, {:.4g})", node + 1, x.x(), x.y(), x.z());
-  }
+  std::string place(int node) const { return node_at(model_, node); }
 
   void check_nodal(const Load& load) {
     const bool acts = !load.force.isZero(0) || !load.moment.isZero(0) || load.moves();

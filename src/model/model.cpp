@@ -7,6 +7,7 @@
 #include <tautline/core/error.hpp>
 #include <tautline/core/text.hpp>
 #include <tautline/model/element_data.hpp>
+#include <tautline/model/names.hpp>
 
 namespace tautline::model {
 
@@ -186,9 +187,8 @@ std::vector<int> links_in_order(const Model& model) {
     for (auto found = link_of.find(model.links[i].leader); found != link_of.end();
          found = link_of.find(model.links[found->second].leader))
       if (++depth[i] > static_cast<int>(model.links.size()))
-        throw ModelError(
-            fmt::format("links lead in a ring through node {}: one of its nodes must follow none",
-                        model.links[i].leader + 1));
+        throw ModelError(fmt::format("links lead in a ring through {}: one of its nodes must follow none",
+                                     node_at(model, model.links[i].leader)));
   for (std::size_t i = 0; i < model.links.size(); ++i) order.push_back(static_cast<int>(i));
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return depth[a] < depth[b]; });
   return order;

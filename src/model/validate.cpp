@@ -6,6 +6,7 @@
 #include <tautline/core/error.hpp>
 #include <tautline/core/text.hpp>
 #include <tautline/model/model.hpp>
+#include <tautline/model/names.hpp>
 
 #include "model/detail/load_faults.hpp"
 
@@ -26,7 +27,7 @@ class Faults {
   void add(std::vector<std::string> more) { faults_.insert(faults_.end(), more.begin(), more.end()); }
 
   std::string element(const char* kind, std::size_t index, int group) const {
-    return fmt::format("{} {} of group \"{}\"", kind, index + 1, model_.groups[group].name);
+    return element_name(model_, kind, index, group);
   }
 
   void raise() const {
@@ -60,7 +61,8 @@ void check_elements(const Model& model, const Elements& elements, const char* ki
     const int n = static_cast<int>(nodes.size());
     for (int k = 1; k < n && smallest > 0; ++k)
       if ((model.nodes[nodes[k]] - model.nodes[nodes[k - 1]]).norm() <= smallest)
-        faults.add("{}: its nodes {} and {} are at the same place", who, nodes[k - 1] + 1, nodes[k] + 1);
+        faults.add("{}: its {} and {} are at the same place", who, node_name(model, nodes[k - 1]),
+                   node_at(model, nodes[k]));
   }
 }
 
@@ -125,9 +127,8 @@ void check_held_rotations(const Model& model, Faults& faults) {
     if (!moves || !(fixed[3] || fixed[4] || fixed[5])) continue;
     for (const int node : support.nodes)
       if (turns_with[node])
-        faults.add(
-            "support \"{}\" holds the rotation of node {}, which turns with another node: support that one",
-            support.name, node + 1);
+        faults.add("support \"{}\" holds the rotation of {}, which turns with another node: support that one",
+                   support.name, node_at(model, node));
   }
 }
 
@@ -141,14 +142,13 @@ void check_links(const Model& model, Faults& faults) {
   count(model.cyclic_pairs);
   for (std::size_t i = 0; i < followed.size(); ++i)
     if (followed[i] > 1)
-      faults.add("node {} follows {} other nodes through links: it can follow one only", i + 1, followed[i]);
+      faults.add("{} follows {} other nodes through links: it can follow one only",
+                 node_at(model, static_cast<int>(i)), followed[i]);
   const auto chain = [&](const auto& pairs) {
     for (const auto& pair : pairs)
       if (followed[pair.leader] > 0)
-        faults.add(
-            "node {} leads node {} through a link and follows another node itself: link both to the "
-            "same node",
-            pair.leader + 1, pair.follower + 1);
+        faults.add("{} leads {} through a link and follows another node itself: link both to the same node",
+                   node_at(model, pair.leader), node_name(model, pair.follower));
   };
   chain(model.cyclic_pairs);
   links_in_order(model);
@@ -160,15 +160,13 @@ void check_links(const Model& model, Faults& faults) {
       const bool rotation = support.fixed[3] || support.fixed[4] || support.fixed[5];
       if (rotation && turned[node])
         faults.add(
-            "support \"{}\" holds a rotation of node {}, which turns with another node through a link: "
-            "support "
+            "support \"{}\" holds a rotation of {}, which turns with another node through a link: support "
             "that one",
-            support.name, node + 1);
+            support.name, node_at(model, node));
       const bool held = support.fixed[0] || support.fixed[1] || support.fixed[2];
       if (held && followed[node] > 0)
-        faults.add(
-            "support \"{}\" holds node {}, which follows another node through a link: support that one",
-            support.name, node + 1);
+        faults.add("support \"{}\" holds {}, which follows another node through a link: support that one",
+                   support.name, node_at(model, node));
     }
   check_held_rotations(model, faults);
 }
@@ -181,7 +179,8 @@ void check_connection(const Model& model, Faults& faults) {
   });
   for (const auto& link : model.links) used[link.leader] = used[link.follower] = true;
   for (std::size_t i = 0; i < used.size(); ++i)
-    if (!used[i]) faults.add("node {} belongs to no element: remove it or connect it", i + 1);
+    if (!used[i])
+      faults.add("{} belongs to no element: remove it or connect it", node_at(model, static_cast<int>(i)));
 }
 
 }  // namespace

@@ -267,9 +267,25 @@ class Summary {
     if (!directory_.empty())
       append(detail::hanging_lines("Results:", 9, {directory_ + " (report.html, results.json)"}));
     if (story_.status == "done") return;
+    const auto& steps = member(results_, "steps");
+    if (steps.is_array() && !steps.empty() && steps.back().contains("diagnosis"))
+      return diagnosis(steps.back());
     Lines parts{story_.status};
     if (!story_.reason.empty()) parts.push_back(story_.reason);
     append(detail::hanging_lines("Not complete:", 14, parts));
+  }
+
+  /// Each finding on a line of its own.
+  void diagnosis(const Json& step) {
+    constexpr std::size_t indent = 14;
+    const auto& told = member(step, "diagnosis");
+    append(detail::hanging_lines(
+        "Not complete:", indent,
+        {fmt::format("{}, step \"{}\"", story_.status, detail::text(member(step, "name")))}));
+    for (const auto& finding : member(told, "findings"))
+      append(detail::hanging_lines("", indent, {detail::text(finding)}));
+    append(detail::hanging_lines("Remedy:", indent, {detail::text(member(told, "remedy"))}));
+    append(detail::hanging_lines("Solver:", indent, {detail::text(member(told, "solver"))}));
   }
 
   static constexpr std::size_t first_column = 26;

@@ -11,6 +11,7 @@
 #include <tautline/element/beam.hpp>
 #include <tautline/element/membrane.hpp>
 #include <tautline/mesh/imported_mesh.hpp>
+#include <tautline/model/names.hpp>
 #include <tautline/model/section.hpp>
 #include <tautline/reflector/perimeter_truss.hpp>
 #include <tautline/reflector/tensegrity_rim.hpp>
@@ -102,6 +103,7 @@ void add_inline(model::Model& model, const model::ModelOptions& options, const d
   for (const auto& [name, position] : options.nodes) {
     index[name] = static_cast<int>(model.nodes.size());
     model.nodes.push_back(position);
+    model.node_names.push_back(name);
   }
   for (const auto& block : options.elements) {
     ElementAdder add(model, block.group, deck);
@@ -271,10 +273,11 @@ void add_cyclic(model::Model& model, const model::CyclicOptions& options) {
       return (model.nodes[node] - wanted).norm() <= 1e-6 * size;
     });
     if (found == leaders.end())
-      throw ModelError(fmt::format(
-          "{}node {} of \"to\" has no partner among the nodes of \"from\" turned "
-          "by {} degrees: it would be at ({:g}, {:g}, {:g})",
-          model::prefix(options.where), follower + 1, options.angle, wanted.x(), wanted.y(), wanted.z()));
+      throw ModelError(
+          fmt::format("{}{} of \"to\" has no partner among the nodes of \"from\" turned "
+                      "by {} degrees: it would be at ({:g}, {:g}, {:g})",
+                      model::prefix(options.where), model::node_at(model, follower), options.angle,
+                      wanted.x(), wanted.y(), wanted.z()));
     if (*found == follower)
       on_axis.push_back(follower);
     else

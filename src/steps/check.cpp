@@ -1,3 +1,7 @@
+#include <map>
+#include <optional>
+#include <type_traits>
+
 #include <fmt/format.h>
 
 #include <tautline/analysis/descent.hpp>
@@ -6,6 +10,8 @@
 #include <tautline/steps/run.hpp>
 
 #include "steps/context.hpp"
+#include "steps/prepare.hpp"
+#include "steps/stage.hpp"
 
 namespace tautline::steps {
 
@@ -42,43 +48,103 @@ std::string steps_text(const deck::Deck& deck) {
   return text + "\n";
 }
 
-/// Supports of each stage of each equilibrium are looked at on the structure as form-found and divided,
-/// undeformed.
-void foretell_mechanisms(Context& context) {
-  for (const auto& step : context.deck.steps) {
-    if (const auto* form_finding = std::get_if<FormFindingOptions>(&step.options)) {
-      const Json entry = run_step(context, *form_finding);
-      if (entry["status"] != "done")
-        throw ModelError(fmt::format("step \"{}\": {}", step.name, entry["reason"].get<std::string>()));
+std::string warnings_text(const Json& results) {
+  std::string text;
+  if (!results.contains("warnings")) return text;
+  for (const auto& warning : results["warnings"])
+    text += fmt::format("warning: {}: {}\n", warning["where"].get<std::string>(),
+                        warning["message"].get<std::string>());
+  return text;
+}
+
+/// @brief Goes through the steps as a run does and leaves out what is solved for.
+///
+/// What is refused is what no solve could mend. A motion without resistance in the structure as drawn is that
+/// only if nothing acts that might tighten it, or if no tension could.
+class Rehearsal {
+ public:
+  explicit Rehearsal(Context& context) : context_(context) {}
+
+  void run() {
+    context_.warn_of_inputs();
+    for (const auto& step : context_.deck.steps) {
+      context_.step_name = step.name;
+      if (!finds_shape(step.options)) context_.warn_of_geometry();
+      try {
+        std::visit([&](const auto& options) { take(options); }, step.options);
+      } catch (const ModelError& error) {
+        throw ModelError(fmt::format("step \"{}\": {}", step.name, error.what()));
+      }
     }
-    if (const auto* rods = std::get_if<RodShapingOptions>(&step.options)) run_step(context, *rods);
-    if (const auto* mesh = std::get_if<MeshOptions>(&step.options)) run_step(context, *mesh);
-    const auto* equilibrium = std::get_if<EquilibriumOptions>(&step.options);
-    if (equilibrium == nullptr) continue;
-    auto stages = equilibrium->stages;
-    if (stages.empty()) stages.emplace_back();
-    for (const auto& stage : stages) {
-      context.system();
-      context.system().begin_stage(equilibrium->support == Ground::free
-                                       ? context.free_boundary(false)
-                                       : context.boundary(stage.hold, false));
-      if (analysis::gives_way(context.system(), context.workspace())) continue;  // a run finds where it hangs
-      if (const auto mechanism = assembly::find_mechanism(context.system(), context.workspace()))
-        throw ModelError(fmt::format("step \"{}\": {}", step.name, mechanism->text));
+    context_.warn_of_geometry();
+  }
+
+  const std::string& notes() const { return notes_; }
+
+ private:
+  template <class Options>
+  void take(const Options& options) {
+    if constexpr (std::is_same_v<Options, FormFindingOptions> || std::is_same_v<Options, MeshOptions> ||
+                  std::is_same_v<Options, RodShapingOptions>) {
+      const Json entry = run_step(context_, options);
+      if (entry["status"] != "done") throw ModelError(entry["reason"].get<std::string>());
+      mechanisms_.clear();
+    } else if constexpr (std::is_same_v<Options, EquilibriumOptions>) {
+      for (const auto& part : parts_of(context_, options)) {
+        context_.acting_loads = part.loads;
+        look_at(part.stage, options.support == Ground::free);
+      }
+      untouched_ = untouched_ && options.scatter.position == 0 && options.scatter.tension == 0;
+    } else {
+      prepare(context_, options);
+      untouched_ = untouched_ && std::is_same_v<Options, ModalOptions>;
     }
   }
-}
+
+  void look_at(const StageOptions& stage, bool free) {
+    const auto loaded = free ? context_.free_boundary(true) : context_.boundary(stage.hold, true);
+    context_.system().begin_stage(loaded);
+    untouched_ = untouched_ && loaded.loads.empty();
+    const auto& mechanism = mechanism_under(stage.hold, free);
+    if (!mechanism) return;
+    const bool slack =
+        analysis::gives_way(context_.system(), context_.workspace());  // a run finds where it hangs
+    if (untouched_ && !slack) throw ModelError(mechanism->text);
+    if (const auto loose = assembly::find_loose_part(context_.system().model(), loaded))
+      throw ModelError(loose->text);
+    notes_ +=
+        fmt::format("note: step \"{}\": as drawn, {}. Whether its loads tighten it only the solve can tell\n",
+                    context_.step_name, mechanism->text);
+  }
+
+  /// Each set of supports is factored once.
+  const std::optional<assembly::Mechanism>& mechanism_under(const std::vector<std::string>& hold, bool free) {
+    const auto [found, is_new] = mechanisms_.try_emplace({hold, free});
+    if (is_new) {
+      context_.system().begin_stage(free ? context_.free_boundary(false) : context_.boundary(hold, false));
+      found->second = assembly::find_mechanism(context_.system(), context_.workspace());
+    }
+    return found->second;
+  }
+
+  Context& context_;
+  std::map<std::pair<std::vector<std::string>, bool>, std::optional<assembly::Mechanism>>
+      mechanisms_;         ///< by what is held
+  bool untouched_ = true;  ///< nothing acted so far, so that the structure stands as drawn or as found
+  std::string notes_;
+};
 
 }  // namespace
 
 std::string check(const deck::Deck& deck) {
   Progress silent;
   Context context(deck, "", false, silent);
-  foretell_mechanisms(context);
+  Rehearsal rehearsal(context);
+  rehearsal.run();
   const std::string structure =
       context.umbrella ? umbrella_text(*context.umbrella) : model_text(context.structure);
-  return fmt::format("{}\n{}{}nothing found that would keep it from being solved\n", deck.title, structure,
-                     steps_text(deck));
+  return fmt::format("{}\n{}{}{}nothing found that would keep it from being solved\n", deck.title, structure,
+                     steps_text(deck), rehearsal.notes() + warnings_text(context.results));
 }
 
 }  // namespace tautline::steps

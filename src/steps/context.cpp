@@ -1,7 +1,10 @@
 #include "steps/context.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -107,8 +110,43 @@ void Context::save() {
 
 void Context::warn(const std::string& code, const std::string& message, const std::string& where) {
   const std::string place = where.empty() ? fmt::format("step \"{}\"", step_name) : where;
-  results["warnings"].push_back({{"code", code}, {"message", message}, {"where", place}});
+  const Json warning{{"code", code}, {"message", message}, {"where", place}};
+  auto& warnings = results["warnings"];
+  if (std::find(warnings.begin(), warnings.end(), warning) != warnings.end()) return;
+  warnings.push_back(warning);
   progress.say(fmt::format("warning: {}: {}", place, message));
+}
+
+void Context::warn(const std::vector<model::Doubt>& doubts) {
+  for (const auto& doubt : doubts) warn(doubt.code, doubt.message, doubt.where);
+}
+
+void Context::warn_of_inputs() {
+  warn(model::input_doubts(structure, {deck.materials, deck.sections}));
+  std::set<std::string> told;
+  for (const auto& step : deck.steps) {
+    const auto* equilibrium = std::get_if<EquilibriumOptions>(&step.options);
+    if (equilibrium == nullptr) continue;
+    std::vector<std::string> loads;
+    for (const auto& load : structure.loads) loads.push_back(load.name);
+    for (const auto& doubt : model::temperature_doubts(structure, equilibrium->loads.value_or(loads)))
+      if (told.insert(doubt.where + doubt.message).second) warn(doubt.code, doubt.message, doubt.where);
+  }
+}
+
+void Context::warn_of_geometry() {
+  if (std::exchange(geometry_looked_at_, true)) return;
+  warn(model::geometry_doubts(structure));
+}
+
+bool finds_shape(const AnyStep& options) {
+  return std::holds_alternative<FormFindingOptions>(options) ||
+         std::holds_alternative<RodShapingOptions>(options);
+}
+
+void Context::warn_of_state(const model::Response& response) {
+  for (const auto& doubt : model::state_doubts(system().model(), response))
+    warn(doubt.code, doubt.message, fmt::format("step \"{}\", {}", step_name, doubt.where));
 }
 
 template <class Picture>

@@ -15,6 +15,7 @@
 #include <tautline/assembly/system.hpp>
 #include <tautline/core/progress.hpp>
 #include <tautline/deck/deck.hpp>
+#include <tautline/model/doubts.hpp>
 #include <tautline/output/fields.hpp>
 #include <tautline/output/file_names.hpp>
 #include <tautline/output/pictures.hpp>
@@ -74,9 +75,15 @@ class Context {
   std::string step_path(const std::string& ending) { return path(step_files_.of(step_name) + ending); }
   /// Writes results.json (rank 0).
   void save();
-  /// Notes in results.json what the user must not overlook, and tells it: `code` for programs, `where` the
-  /// step in hand or what is named. Told alike by every rank.
+  /// Notes in results.json what the user must not overlook, and tells it, once: `code` for programs, `where`
+  /// the step in hand or what is named. Told alike by every rank.
   void warn(const std::string& code, const std::string& message, const std::string& where = {});
+  /// Warns of what is possible but hardly meant: in the deck's figures; and, once, in how the elements of the
+  /// structure lie to each other.
+  void warn_of_inputs();
+  void warn_of_geometry();
+  /// Warns of what the present state asks of members.
+  void warn_of_state(const model::Response& response);
   /// Draws DIR/pictures/<step>_<name>.png (rank 0) and notes it with its caption; a failure to draw is told
   /// once and noted.
   void draw(const std::string& name, const std::string& caption, const output::View& view);
@@ -95,18 +102,22 @@ class Context {
 
  private:
   std::vector<model::Load> loads_in_action(bool loaded) const;
+  void warn(const std::vector<model::Doubt>& doubts);
   template <class Picture>
   void draw_any(const std::string& name, const std::string& caption, const Picture& picture);
 
   std::string why_none_;
   output::RunDirectory files_;
   output::FileNames step_files_;
-  bool pictures_, root_;
+  bool pictures_, root_, geometry_looked_at_ = false;
   double output_seconds_ = 0;
   std::unique_ptr<assembly::System> system_;
   std::unique_ptr<analysis::Workspace> workspace_;
   output::FieldSeries fields_;
 };
+
+/// Whether a step lays nodes where they were not drawn.
+bool finds_shape(const AnyStep& options);
 
 /// The structure of a deck: reflector or model, with sections, initial states, supports and loads. @throws
 /// ModelError

@@ -19,33 +19,20 @@ namespace tautline::steps {
 
 namespace {
 
-/// A stage and the loads that act at its end.
-struct Part {
-  StageOptions stage;
-  std::vector<std::string> loads;
-};
-
 std::vector<std::string> names_of(const std::vector<model::Load>& loads) {
   std::vector<std::string> names;
   for (const auto& load : loads) names.push_back(load.name);
   return names;
 }
 
-/// The stages in order. Loads come in the last one; before a path that is followed by its length what is
-/// released comes to rest under the loads that act already.
-std::vector<Part> parts_of(const EquilibriumOptions& options, const std::vector<std::string>& acting,
-                           const std::vector<std::string>& wanted) {
-  std::vector<Part> parts;
-  for (const auto& stage : options.stages) parts.push_back({stage, {}});
-  if (parts.empty()) parts.push_back({{"supports only", {}, {}}, {}});
-  parts.back().loads = wanted;
-  if (options.control == Control::arc_length) {
-    Part rest = parts.back();
-    rest.stage.name += ", at rest";
-    rest.loads = acting;
-    parts.insert(parts.end() - 1, rest);
-  }
-  return parts;
+/// What happened to the structure comes first, what the solver did last.
+void fail(const StageRunner& runner, bool unstable, const std::string& solver, Json& entry) {
+  const auto diagnosis = runner.diagnosis(unstable);
+  entry["status"] = "not_converged";
+  entry["reason"] = unstable ? solver + ". " + diagnosis.text()
+                             : fmt::format("{}. The solver: {}", diagnosis.text(), solver);
+  entry["diagnosis"] = diagnosis.json();
+  entry["diagnosis"]["solver"] = solver;
 }
 
 /// An equilibrium that the structure would leave at the slightest touch is no result, unless it is meant.
@@ -53,20 +40,16 @@ void refuse_unstable(const EquilibriumOptions& options, const StageRunner& runne
   if (entry["status"] != "done" || options.allow_unstable || options.control == Control::arc_length) return;
   const int negative = runner.entries().back()["negative_pivots"];
   if (negative == 0) return;
-  entry["status"] = "not_converged";
-  entry["reason"] = fmt::format(
-      "the equilibrium is unstable: {} direction{} in which the structure would leave it (negative pivots). "
-      "Where "
-      "critical_points tells of a bifurcation on the way, take its branch (control: arc_length, branch: 1) "
-      "or disturb "
-      "the structure with a small load; else try increments. allow_unstable: true takes it as it is",
-      negative, negative == 1 ? "" : "s");
+  fail(runner, true,
+       fmt::format("the equilibrium is unstable: {} direction{} in which the structure would leave it "
+                   "(negative pivots)",
+                   negative, negative == 1 ? "" : "s"),
+       entry);
 }
 
 void follow_parts(Context& context, const EquilibriumOptions& options, StageRunner& runner, Json& entry) {
-  const auto acting = options.reset ? std::vector<std::string>{} : context.acting_loads;
-  const auto wanted = options.loads ? *options.loads : names_of(context.system().model().loads);
-  auto parts = parts_of(options, acting, wanted);
+  auto parts = parts_of(context, options);
+  const auto wanted = parts.back().loads;
   if (options.release == Release::automatic) {
     const auto release = find_release(context, wanted);
     entry["release_attempts"] = release.attempts;
@@ -78,13 +61,10 @@ void follow_parts(Context& context, const EquilibriumOptions& options, StageRunn
   }
   for (std::size_t i = static_cast<std::size_t>(runner.first()); i < parts.size(); ++i) {
     if (runner.run(parts[i].stage, parts[i].loads, i + 1 == parts.size())) continue;
-    entry["status"] = "not_converged";
-    entry["reason"] = fmt::format(
-        "stage \"{}\" {}. Try a stage in between that holds more (or release: automatic), a smaller "
-        "solver.min_step, control: arc_length if loads have passed a limit, fallback: descent if any "
-        "equilibrium beyond it will do, or check the structure for a mechanism (tautline check). See "
-        "docs/when_it_does_not_converge.md",
-        parts[i].stage.name, runner.entries().back()["reason"].get<std::string>());
+    fail(runner, false,
+         fmt::format("stage \"{}\" {}", parts[i].stage.name,
+                     runner.entries().back()["reason"].get<std::string>()),
+         entry);
     break;
   }
   context.acting_loads = wanted;
@@ -107,6 +87,20 @@ Json accelerations_json(const assembly::System& system) {
 
 }  // namespace
 
+std::vector<Part> parts_of(Context& context, const EquilibriumOptions& options) {
+  std::vector<Part> parts;
+  for (const auto& stage : options.stages) parts.push_back({stage, {}});
+  if (parts.empty()) parts.push_back({{"supports only", {}, {}}, {}});
+  parts.back().loads = options.loads ? *options.loads : names_of(context.system().model().loads);
+  if (options.control == Control::arc_length) {
+    Part rest = parts.back();
+    rest.stage.name += ", at rest";
+    rest.loads = options.reset ? std::vector<std::string>{} : context.acting_loads;
+    parts.insert(parts.end() - 1, rest);
+  }
+  return parts;
+}
+
 Json run_step(Context& context, const EquilibriumOptions& options) {
   auto& system = context.system();
   if (options.reset && !context.resume) {
@@ -120,6 +114,7 @@ Json run_step(Context& context, const EquilibriumOptions& options) {
   follow_parts(context, options, runner, entry);
   entry["stages"] = runner.entries();
   const auto response = model::evaluate_response(system.model(), system.state());
+  context.warn_of_state(response);
   entry["reactions"] = reactions_json(system, runner.boundary(), system.reactions());
   if (options.support == Ground::free) entry["bodies"] = accelerations_json(system);
   if (!runner.way().empty()) entry["path"] = runner.way();

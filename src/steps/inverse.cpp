@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <tautline/la/session.hpp>
+#include <tautline/model/names.hpp>
 #include <tautline/model/response.hpp>
 #include <tautline/output/tables.hpp>
 
@@ -13,6 +14,7 @@
 #include "steps/summaries.hpp"
 #include "steps/state_pictures.hpp"
 #include "steps/fields.hpp"
+#include "steps/prepare.hpp"
 
 namespace tautline::steps {
 
@@ -97,7 +99,7 @@ Json iterations_json(const analysis::GaussNewtonSummary& found) {
 }
 
 /// What a designer must not overlook.
-std::vector<std::string> warnings_of(const Json& entry) {
+std::vector<std::string> warnings_of(const model::Model& model, const Json& entry) {
   std::vector<std::string> warnings;
   for (const auto& target : entry["targets"]) {
     const auto on = target["on"].get<std::vector<std::string>>();
@@ -105,8 +107,8 @@ std::vector<std::string> warnings_of(const Json& entry) {
         fmt::format("\"{}\" of {}", target["quantity"].get<std::string>(), fmt::join(on, ", "));
     if (target["met"].get<bool>()) continue;
     warnings.push_back(
-        fmt::format("target {} is missed by up to {:.4g} m, at node {}{}", name,
-                    target["miss_max"].get<double>(), target["worst_node"].get<int>(),
+        fmt::format("target {} is missed by up to {:.4g} m, at {}{}", name, target["miss_max"].get<double>(),
+                    model::node_in_group(model, target["worst_node"].get<int>() - 1),
                     target.contains("not_influenced")
                         ? fmt::format("; no unknown moves {} of its {} nodes",
                                       target["not_influenced"].get<int>(), target["nodes"].get<int>())
@@ -178,7 +180,7 @@ void draw_misses(Context& context, const analysis::GaussNewtonSummary& found) {
 }
 
 void note_warnings(Context& context, Json& entry) {
-  const auto warnings = warnings_of(entry);
+  const auto warnings = warnings_of(context.system().model(), entry);
   entry["warnings"] = warnings;
   if (warnings.empty()) return;
   std::string text = warnings.front();
@@ -200,6 +202,11 @@ Json status_json(const analysis::GaussNewtonSummary& found) {
 }
 
 }  // namespace
+
+void prepare(Context& context, const InverseOptions& options) {
+  const CableProblem problem(context, options);
+  context.system().begin_stage(context.boundary({}, true));
+}
 
 Json run_step(Context& context, const InverseOptions& options) {
   auto& system = context.system();

@@ -181,6 +181,13 @@ double reference_load(Context& context, const std::vector<std::string>& loads) {
   return force > 0 ? force : moment;
 }
 
+void require_compression(const model::Model& model) {
+  if (never_buckles(model))
+    throw ModelError(
+        "linear buckling: cables, and cloth that wrinkles, carry no compression, so that no load makes a "
+        "structure of them alone buckle. Ask for an equilibrium, or for modes");
+}
+
 std::string come_to_rest(Context& context) {
   context.system().begin_stage(context.boundary({}, true));
   const auto path = follow(context, "at rest");
@@ -190,10 +197,7 @@ std::string come_to_rest(Context& context) {
 LinearBuckling linear_buckling(Context& context, const std::vector<std::string>& loads, int modes,
                                Sign sign) {
   auto& system = context.system();
-  if (never_buckles(system.model()))
-    throw ModelError(
-        "linear buckling: cables, and cloth that wrinkles, carry no compression, so that no load makes a "
-        "structure of them alone buckle. Ask for an equilibrium, or for modes");
+  require_compression(system.model());
   LinearBuckling found;
   const auto rest = system.rest();
   if (sign == Sign::both && !one_sided(system)) {

@@ -36,6 +36,9 @@ assembly::Boundary boundary_with(Context& context, const std::vector<std::string
 /// Sum over the nodes of the sizes of the forces named, or of the moments if there are no forces [N], [N m].
 double reference_load(Context& context, const std::vector<std::string>& loads);
 
+/// @throws ModelError for a structure in which nothing carries compression
+void require_compression(const model::Model& model);
+
 /// Brings the system to rest under what acts at present. @return why it failed, or nothing
 std::string come_to_rest(Context& context);
 

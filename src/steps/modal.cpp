@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <tautline/assembly/bodies.hpp>
-#include <tautline/core/error.hpp>
 #include <tautline/core/text.hpp>
 #include <tautline/la/eigen_solver.hpp>
 #include <tautline/la/session.hpp>
@@ -17,6 +16,7 @@
 #include "steps/context.hpp"
 #include "steps/free_modes.hpp"
 #include "steps/mode_shapes.hpp"
+#include "steps/prepare.hpp"
 #include "steps/summaries.hpp"
 #include "steps/fields.hpp"
 
@@ -91,8 +91,7 @@ void warn_of_mechanisms(Context& context, const la::EigenPairs& mechanisms) {
     std::size_t most = 0;
     for (std::size_t i = 1; i < field.displacement.size(); ++i)
       if (size(i) > (1 + 1e-6) * size(most)) most = i;
-    const Vec3& at = system.model().nodes[most];
-    const auto place = fmt::format("node {} at ({:.4g}, {:.4g}, {:.4g})", most + 1, at.x(), at.y(), at.z());
+    const auto place = model::node_at(system.model(), static_cast<int>(most));
     if (places.size() < 5 && std::find(places.begin(), places.end(), place) == places.end())
       places.push_back(place);
   }
@@ -118,19 +117,29 @@ la::EigenPairs solve(Context& context, const ModalOptions& options, const la::Sy
   return std::move(found.elastic);
 }
 
+/// A mode without frequency is a motion that nothing resists, or a state about to become unstable.
+void warn_of_still_modes(Context& context, const Json& entry) {
+  const double level = entry["frequency_rounding"];
+  std::vector<std::string> still;
+  for (std::size_t i = 0; i < entry["frequencies"].size(); ++i)
+    if (std::abs(entry["frequencies"][i].get<double>()) <= level) still.push_back(std::to_string(i + 1));
+  if (still.empty()) return;
+  context.warn(
+      "no_frequency",
+      fmt::format("mode{} {} {} no frequency above its rounding of {:.2g} Hz: nothing resists that motion. "
+                  "Give cables and cloth a tension, or support what moves",
+                  still.size() == 1 ? "" : "s", join(still, ", "), still.size() == 1 ? "has" : "have",
+                  level));
+}
+
 }  // namespace
 
 Json run_step(Context& context, const ModalOptions& options) {
   auto& system = context.system();
-  system.begin_stage(context.vibration_boundary(options.support));
+  prepare(context, options);
   auto& workspace = context.workspace();
   system.tangent(workspace.tangent);
   const auto mass = system.mass(options.mass);
-  if (mass.norm_of_diagonal() == 0)
-    throw ModelError(
-        "nothing that can move has mass, so that there are no vibrations: give the materials a `density`, "
-        "the "
-        "sections a mass, or add point masses");
   context.progress.update(
       fmt::format("{} | {} modes of {} unknowns", context.step_name, options.modes, system.n_dofs()));
   Json entry;
@@ -164,6 +173,7 @@ Json run_step(Context& context, const ModalOptions& options) {
           fmt::format("mode {} has a negative eigenvalue {:.3e}: the state is unstable", i + 1, eigenvalue);
     }
   }
+  warn_of_still_modes(context, entry);
   context.write_fields(context.step_name, grid);
   return entry;
 }

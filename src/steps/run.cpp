@@ -99,6 +99,7 @@ void judge_balance(Context& context, const Step& step, Json& entry) {
 /// Runs one step and appends its entry. @return its status
 std::string run_and_record(Context& context, const Step& step) {
   context.step_name = step.name;
+  if (!finds_shape(step.options)) context.warn_of_geometry();
   context.progress.say(fmt::format("step {} ({})", step.name, step.kind));
   const auto start = Clock::now();
   const Counters before = Counters::of(context);
@@ -210,6 +211,7 @@ ExitCode run(const deck::Deck& deck, const RunSettings& settings, Progress& prog
   std::string status = "done";
   try {
     int done = checkpoint ? take_up(context, *checkpoint, settings.from) : 0;
+    context.warn_of_inputs();
     for (; done < static_cast<int>(deck.steps.size()); ++done) {
       if (la::true_on_any_rank(interrupt_requested())) throw Interrupted();
       status = run_and_record(context, deck.steps[static_cast<std::size_t>(done)]);
@@ -217,6 +219,7 @@ ExitCode run(const deck::Deck& deck, const RunSettings& settings, Progress& prog
       if (status != "done") break;
       leave_checkpoint(context, done + 1);
     }
+    context.warn_of_geometry();
     if (status != "done") code = ExitCode::not_converged;
   } catch (const Interrupted& error) {
     status = "interrupted";

@@ -61,7 +61,7 @@ Json iterations_table(const analysis::PathSummary& path) {
 }  // namespace
 
 StageRunner::StageRunner(Context& context, const EquilibriumOptions& options)
-    : context_(context), options_(options) {
+    : context_(context), options_(options), beginning_(Beginning::of(context.system())) {
   if (!context.resume) return;
   first_ = context.resume->stage;
   entries_ = context.resume->entry;
@@ -163,8 +163,23 @@ analysis::PathSummary StageRunner::follow_stage(const StageOptions& stage, bool 
   return follow(context_, stage.name, is_last ? options_.increments : 1, callback, start);
 }
 
-void StageRunner::look_for_mechanism(const StageOptions& stage, const analysis::PathSummary& path,
-                                     bool is_last) {
+Diagnosis StageRunner::diagnosis(bool unstable) const {
+  const auto& last = entries_.back();
+  Ending ending;
+  ending.lambda = last["lambda"];
+  ending.found = last["lambda_steps"] > 0 || entries_.size() > 1;
+  ending.unstable = unstable;
+  ending.bifurcated = std::any_of(critical_.begin(), critical_.end(),
+                                  [](const Json& point) { return point["kind"] == "bifurcation"; });
+  ending.worst_node = imbalance_.node;
+  ending.out_of_balance = imbalance_.force;
+  return diagnose(context_, beginning_, ending);
+}
+
+/// A part that nothing holds is told as such; where the stage began with resistance it is what acts that took
+/// it away, and no support is to blame.
+void StageRunner::refuse_mechanism(const StageOptions& stage, const analysis::PathSummary& path,
+                                   const analysis::PathProblem::Kept& at_start, bool is_last) {
   auto& system = context_.system();
   if (path.reached && path.inertia.null > 0)
     if (const auto slack = assembly::find_slack(system, context_.workspace())) {
@@ -172,10 +187,22 @@ void StageRunner::look_for_mechanism(const StageOptions& stage, const analysis::
       return;
     }
   const bool fell = !path.reached && path.points.empty();
+  if (!fell && path.inertia.null == 0) return;
   if (fell && analysis::gives_way(system, context_.workspace())) return;  // slack, and no mechanism
-  if (fell || path.inertia.null > 0)
-    if (const auto mechanism = assembly::find_mechanism(system, context_.workspace()))
-      throw ModelError(fmt::format("stage \"{}\": {}", stage.name, mechanism->text));
+  const auto mechanism = assembly::find_mechanism(system, context_.workspace());
+  if (!mechanism) return;
+  const auto refuse = [&](const std::string& text) {
+    throw ModelError(fmt::format("stage \"{}\": {}", stage.name, text));
+  };
+  if (const auto loose = assembly::find_loose_part(system.model(), boundary_)) refuse(loose->text);
+  if (!path.points.empty()) {
+    const auto there = system.keep();
+    system.return_to(at_start);
+    const bool stiff = !assembly::find_mechanism(system, context_.workspace());
+    system.return_to(*there);
+    if (stiff) refuse(fmt::format("{}. It was stiff before: {}", mechanism->motion, diagnosis(false).text()));
+  }
+  refuse(mechanism->text);
 }
 
 bool StageRunner::run(const StageOptions& stage, const std::vector<std::string>& loads, bool is_last) {
@@ -191,7 +218,8 @@ bool StageRunner::run(const StageOptions& stage, const std::vector<std::string>&
   bookmark.point.emplace();
   bookmark.point->stage = static_cast<int>(entries_.size());
   bookmark.point->start = system.rest();
-  const auto start = system.begin_stage(boundary_);
+  const auto start = imbalance_ = system.begin_stage(boundary_);
+  const auto at_start = system.keep();
   context_.progress.say(fmt::format("{} | {}: out-of-balance at the start {:.3e} N", context_.step_name,
                                     stage.name, start.force));
   if (!anew && !entries_.empty()) save_point(bookmark, true);
@@ -204,8 +232,8 @@ bool StageRunner::run(const StageOptions& stage, const std::vector<std::string>&
                     "equilibrium",
                     context_.step_name, stage.name, path.descent_steps));
   draw_critical_points(context_, path, critical_.size() - path.critical.size() + 1);
-  look_for_mechanism(stage, path, is_last);
   entries_.push_back(entry_of(stage, start, path, seconds));
+  refuse_mechanism(stage, path, *at_start, is_last);
   if (path.last_resort)
     entries_.back()[key_of(path.last_resort->method)] = last_resort_json(*path.last_resort);
   return path.reached;

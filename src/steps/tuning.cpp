@@ -14,6 +14,7 @@
 #include "steps/summaries.hpp"
 #include "steps/state_pictures.hpp"
 #include "steps/fields.hpp"
+#include "steps/prepare.hpp"
 
 namespace tautline::steps {
 
@@ -161,12 +162,17 @@ analysis::PathSummary make_pass(Context& context, const std::vector<int>& ties, 
 
 }  // namespace
 
+void prepare(Context& context, const TuningStepOptions& step) {
+  if (!context.surface) throw ModelError("tuning needs a reflector: this deck has none");
+  tuned_cables(context, step.tuning);
+  context.system().begin_stage(context.boundary({}, true));
+}
+
 Json run_step(Context& context, const TuningStepOptions& step) {
   auto options = step.tuning;
-  if (!context.surface) throw ModelError("tuning needs a reflector: this deck has none");
+  prepare(context, step);
   auto& system = context.system();
   const auto ties = tuned_cables(context, options);
-  system.begin_stage(context.boundary({}, true));  // the influence of ties is that between the supports
   if (std::isnan(options.tension_min)) options.tension_min = 0.5 * least_tension(system, ties);
   auto error = measure(context);
   Json entry{{"status", "done"}, {"method", options.method == TuningMethod::rule ? "rule" : "sensitivity"}};

@@ -71,6 +71,44 @@ case $1 in
     run 3 "$WORK/deck.yaml"
     says "$WORK/err" 'stress nothing'
     ;;
+  no_mechanism)   # what the loads tighten is no mechanism to `check` either
+    for deck in slack_catenary swing; do
+      expect 0 "$TAUTLINE" check "$here/decks/$deck.yaml"
+      says "$WORK/out" 'note: step "equilibrium": as drawn, the structure can move without resistance'
+      run 0 "$here/decks/$deck.yaml"
+    done
+    ;;
+  check_is_run_without_the_solve)   # what a step refuses before it solves, check refuses as well, in the same words
+    sed 's|^steps:.*|steps:\n  - {kind: modal, modes: 50}|; /^  - kind: equilibrium/d' "$here/decks/swing.yaml" >"$WORK/modes.yaml"
+    sed 's|^steps:.*|steps:\n  - {kind: buckling}|; /^  - kind: equilibrium/d' "$here/decks/slack_catenary.yaml" >"$WORK/cables.yaml"
+    sed 's|force: .*}|displacement: [0, 0, -0.1]}|' "$here/decks/swing.yaml" >"$WORK/motion.yaml"
+    for case in 'modes|Ask for at most' 'cables|carry no compression' 'motion|node "lamp" of "arm"'; do
+      expect 3 "$TAUTLINE" check "$WORK/${case%%|*}.yaml"
+      says "$WORK/err" "${case#*|}"
+      run 3 "$WORK/${case%%|*}.yaml"
+      says "$WORK/err" "${case#*|}"
+    done
+    ;;
+  lost_prestress)
+    run 4 "$here/decks/lost_prestress.yaml"
+    says "$WORK/out" '"high" lost its prestress: [0-9.]+ of 10000 N left'
+    says "$WORK/out" '"high_ring" lost its prestress'
+    says "$WORK/out" 'Remedy: .*more prestress'
+    says "$out/results.json" '"findings"'
+    ! grep -q 'supports leave' "$WORK/out" || fail "the supports are blamed for the load"
+    ;;
+  doubts)
+    expect 0 "$TAUTLINE" check "$here/decks/doubts.yaml"
+    for what in 'the diameter is 120 m' 'in mm/s\^2' 'below absolute zero' 'has the same nodes'; do
+      says "$WORK/out" "warning: .*$what"
+    done
+    run 0 "$here/decks/doubts.yaml"
+    for code in section_size acceleration temperature duplicate_elements; do
+      says "$out/results.json" "\"code\": \"$code\""
+    done
+    says "$WORK/out" 'Warning: .*absolute|Warning:'
+    says "$out/report.html" 'below absolute zero'
+    ;;
   pressed_ties)   # the rim is so low that the net would hang above it: ties would have to push
     run 3 "$SOURCE/inputs/dish_4m.yaml" --set reflector.rim_height=0.25
     says "$WORK/err" 'tie'

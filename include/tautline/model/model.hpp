@@ -200,7 +200,8 @@ struct InitialMotion {
 };
 
 struct Model {
-  Points nodes;  ///< reference coordinates [m]
+  Points nodes;                         ///< reference coordinates [m]
+  std::vector<std::string> node_names;  ///< as in the deck, of the first nodes; of a mesh or reflector none
   InitialMotion initial;
   std::vector<Group> groups;
   std::vector<Cable> cables;
