@@ -11,6 +11,7 @@
 #include <tautline/core/text.hpp>
 #include <tautline/la/eigen_solver.hpp>
 #include <tautline/la/session.hpp>
+#include <tautline/model/names.hpp>
 #include <tautline/model/response.hpp>
 
 #include "steps/context.hpp"
