@@ -239,6 +239,16 @@ TEST(LoadAudit, KnowsEveryLoadOfTheMixture) {
   EXPECT_NO_THROW(system.begin_stage({{support({0, 3}, clamped)}, all_loads()}));
 }
 
+TEST(LoadAudit, KnowsLoadsOfOneUnitOrNone) {
+  const auto model = mixture();
+  for (const double pressure : {0.0, 1.0, -1.0}) {
+    auto gas = on("cloth");
+    gas.pressure = pressure;
+    System system(model);
+    EXPECT_NO_THROW(system.begin_stage({{support({0, 3}, clamped)}, {gas}})) << pressure;
+  }
+}
+
 TEST(LoadAudit, FindsAMomentThatNothingTakesUp) {
   model::Model model;
   model.nodes = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
