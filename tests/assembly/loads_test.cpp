@@ -247,6 +247,14 @@ TEST(LoadAudit, KnowsLoadsOfOneUnitOrNone) {
     System system(model);
     EXPECT_NO_THROW(system.begin_stage({{support({0, 3}, clamped)}, {gas}})) << pressure;
   }
+  for (const double size : {1e-6, 0.5, 1.0}) {
+    auto snow = on("shell"), wind = on("rod");
+    snow.surface_force = Vec3(0, 0, size);
+    wind.line_force = Vec3(size, 0, 0);
+    System system(model);
+    EXPECT_NO_THROW(system.begin_stage({{support({0, 3}, clamped)}, {snow, wind, weight({0, size, 0})}}))
+        << size;
+  }
 }
 
 TEST(LoadAudit, FindsAMomentThatNothingTakesUp) {
