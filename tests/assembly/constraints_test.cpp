@@ -73,6 +73,14 @@ TEST(Links, TangentOfAUniversalJointOnAnArmIsTheDerivativeOfTheResidual) {
   expect_consistent_tangent(two_beams({0.1, 0.2, 0.3}, joint), clamped_with_loads());
 }
 
+/// A moment whose direction stays does work on turns about axes that turn with others.
+TEST(Links, TangentOfADeadMomentBehindAUniversalJointIsTheDerivativeOfTheResidual) {
+  model::Link joint;
+  joint.hinge = {Vec3(0, 1, 0), Vec3(0, 0, 1)};
+  expect_consistent_tangent(two_beams({0.1, 0.2, 0.3}, joint),
+                            {{support({0}, clamped)}, {load(2, Vec3::Zero(), {300, -200, 500})}});
+}
+
 TEST(Links, TangentOfAChainIsTheDerivativeOfTheResidual) {
   model::Link hinge;
   hinge.hinge = {Vec3(0, 1, 0)};

@@ -239,6 +239,24 @@ TEST(LoadAudit, KnowsEveryLoadOfTheMixture) {
   EXPECT_NO_THROW(system.begin_stage({{support({0, 3}, clamped)}, all_loads()}));
 }
 
+TEST(LoadAudit, KnowsLoadsOfOneUnitOrNone) {
+  const auto model = mixture();
+  for (const double pressure : {0.0, 1.0, -1.0}) {
+    auto gas = on("cloth");
+    gas.pressure = pressure;
+    System system(model);
+    EXPECT_NO_THROW(system.begin_stage({{support({0, 3}, clamped)}, {gas}})) << pressure;
+  }
+  for (const double size : {1e-6, 0.5, 1.0}) {
+    auto snow = on("shell"), wind = on("rod");
+    snow.surface_force = Vec3(0, 0, size);
+    wind.line_force = Vec3(size, 0, 0);
+    System system(model);
+    EXPECT_NO_THROW(system.begin_stage({{support({0, 3}, clamped)}, {snow, wind, weight({0, size, 0})}}))
+        << size;
+  }
+}
+
 TEST(LoadAudit, FindsAMomentThatNothingTakesUp) {
   model::Model model;
   model.nodes = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};

@@ -1,6 +1,7 @@
 // What linear responses do: strains, pulls of cables, stresses on a ray, and what a stage imposes.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <tautline/core/rotation.hpp>
 
@@ -203,29 +204,55 @@ TEST(Response, OnlySheetsThatMayWrinkleDo) {
   EXPECT_FALSE(System(model).may_wrinkle());
 }
 
-/// As long as a sheet is taut, that it may wrinkle changes nothing.
-TEST(Response, TautSheetsHaveTheirTangentOnARay) {
+/// Warm sheets that a stage warms further and pulls, with or without leave to wrinkle.
+model::Model sheets(bool wrinkling) {
   model::Model model;
   model.nodes = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}, {3, 0.5, 0}};
   const int cloth = add_membrane_group(model, "cloth");
-  model.groups[cloth].membrane.wrinkling = true;
+  model.groups[cloth].membrane.wrinkling = wrinkling;
+  model.groups[cloth].membrane.thermal_expansion = model.groups[cloth].membrane.thermal_expansion_2 = 1e-5;
   model.membranes.push_back({{0, 1, 2, 3}, cloth, Vec3(300, 200, 20)});
   model.membranes.push_back({{1, 4, 2}, cloth, Vec3(300, 200, 20)});
-  System system(model);
-  system.begin_stage({{support({0, 3})}, {}});
-  la::Vector rate(system.layout());
-  for (int node = 0; node < 5; ++node)
-    rate.add(0.01 * model.nodes[static_cast<std::size_t>(node)].x(),
-             system.mean_motion({node}, Vec3(1, 0.2, 0)));
-  const Ray ray{0, nullptr, &rate, 1e-6};
-  auto k = system.new_matrix();
-  system.tangent(k);
-  la::Vector push(system.layout()), plain(system.layout()), ahead(system.layout());
-  push.add(1, system.mean_motion({1, 4}, Vec3(0.3, 1, -2)));
-  k.multiply(push, plain);
-  system.tangent_towards(ray).multiply(push, ahead);
-  ahead.add(-1, plain);
-  EXPECT_LT(ahead.norm(), 1e-4 * plain.norm());
+  return model;
+}
+
+/// As long as sheets are taut, that they may wrinkle changes nothing: not where a ray begins, not on its way,
+/// and not what changes along it.
+TEST(Response, TautSheetsAnswerOnARayAsThoseThatCannotWrinkle) {
+  const auto answers = [](bool wrinkling) {
+    System system(sheets(wrinkling));
+    auto cold = on("cloth"), warm = on("cloth");
+    cold.temperature_change = -5;
+    warm.temperature_change = 3;
+    const Boundary all_held{{support({0, 1, 2, 3, 4})}, {cold}};
+    solve(system, all_held);
+    system.begin_stage({{support({0, 3})}, {warm}});
+    la::Vector rate(system.layout()), way(system.layout());
+    for (int node = 0; node < 5; ++node) {
+      const double x = system.model().nodes[static_cast<std::size_t>(node)].x();
+      rate.add(1e-3 * x, system.mean_motion({node}, Vec3(1, 0.2, 0)));
+      way.add(1e-5 * x, system.mean_motion({node}, Vec3(1, 0.2, 0)));
+    }
+    la::Vector push(system.layout());
+    push.add(1, system.mean_motion({1, 4}, Vec3(0.3, 1, -2)));
+    push.add(1, system.mean_motion({2}, Vec3(-0.7, 0.4, 1)));
+    const auto under = [&](const la::SymmetricMatrix& k) {
+      la::Vector force(system.layout());
+      k.multiply(push, force);
+      std::vector<double> all;
+      force.gather(all);
+      return VecX(Eigen::Map<const VecX>(all.data(), static_cast<Eigen::Index>(all.size())));
+    };
+    const Ray from_rest{0, nullptr, &rate, 1e-5}, on_the_way{0.01, &way, &rate, 1e-5};
+    return std::array{under(system.tangent_towards(from_rest)), under(system.tangent_at(on_the_way)),
+                      under(system.stress_change(from_rest))};
+  };
+  const auto found = answers(true), expected = answers(false);
+  EXPECT_LT((found[0] - expected[0]).norm(), 1e-7 * expected[0].norm());
+  const double grown = (expected[1] - expected[0]).norm();  // by the stresses on the way
+  EXPECT_GT(grown, 1e-6 * expected[0].norm());
+  EXPECT_LT((found[1] - expected[1]).norm(), 1e-2 * grown);
+  EXPECT_LT((found[2] - expected[2]).norm(), 1e-3 * expected[2].norm());
 }
 
 TEST(Stage, SizeOfWhatMovesIsInPartsOfTheStructureAndTurnsWithTheirWeight) {

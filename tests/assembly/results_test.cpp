@@ -181,6 +181,30 @@ TEST(Results, ForcesOfNeighbouringSectorsAreThoseOfTheWholeRing) {
   for (const int other : {1, 2, 3}) EXPECT_EQ(forces.force[static_cast<std::size_t>(other)].norm(), 0);
 }
 
+/// A mast on each face, with a load at the end of an arm from its top: the follower carries what its sector
+/// puts on it, the moment of the arm with it.
+TEST(Results, MomentsOfArmsGoToTheNeighbouringSector) {
+  const Mat3 turn = rotation_of({0, 0, std::acos(-1) / 2});
+  model::Model model;
+  const Vec3 foot(2, 0, 0), top(2, 0, 3), arm(0.5, 0.2, 0.4);
+  model.nodes = {foot, top, turn * foot, turn * top, turn * top + arm};
+  const int rod = add_beam_group(model, "rod");
+  model.groups[rod].beam = {1e6, 2e3, 3e3, 1e3, 0, 0, 2, 0, 0};
+  add_beam(model, rod, 0, 1);
+  model.links.push_back({3, 4, false, {}, -1});
+  model.cyclic_pairs.push_back({0, 2, turn});
+  model.cyclic_pairs.push_back({1, 3, turn});
+  System system(model);
+  const Vec3 force(0.1, -0.2, 0.3);
+  solve(system, {{support({0}, clamped)}, {load(4, force)}});
+  const auto forces = system.constraint_forces();
+  const auto x = model::positions(model, system.state());
+  const Vec3 lever = x[4] - x[3];
+  EXPECT_LT((forces.force[3] + force).norm(), 1e-9);
+  EXPECT_LT((forces.moment[3] + lever.cross(force)).norm(), 1e-9);
+  EXPECT_LT((forces.moment[1] - turn.transpose() * lever.cross(force)).norm(), 1e-9);
+}
+
 TEST(Results, SizeOfAnIncrementIsThatOfTheNodeThatMovesMost) {
   const auto model = mixture();
   System system(model);

@@ -93,6 +93,33 @@ TEST_P(EachDamping, FilmWithEdgeCablesComesToRestAsTheMinimalFilm) {
   EXPECT_LT(energy(film.nodes), 0.99 * energy(net.net.nodes));
 }
 
+/// Where the structure stands does not matter: the same steps, a thousand metres away.
+TEST_P(EachDamping, FilmComesToRestInTheSameStepsWhereverItIs) {
+  const auto steps = [&](const Vec3& offset) {
+    ElasticNet net;
+    net.film = add_film_grid(4, net.net, 1);
+    for (Vec3& node : net.net.nodes) node += offset;
+    net.tension = VecX::Constant(net.net.branches.size(), 3);
+    DynamicRelaxationOptions options = with(GetParam());
+    options.tolerance = 1e-7;
+    const RelaxationResult result = relax(net, options);
+    EXPECT_TRUE(result.converged) << result.reason;
+    return result.iterations;
+  };
+  const int here = steps(Vec3::Zero());
+  EXPECT_NEAR(steps({1000, -2000, 500}), here, 0.02 * here + 2);
+}
+
+/// Edge cables that pull too little: the film draws its corners' edges together.
+TEST_P(EachDamping, FilmWhoseEdgesDoNotHoldItIsToldNotReturned) {
+  ElasticNet net;
+  net.film = add_film_grid(4, net.net, 1);
+  net.tension = VecX::Constant(net.net.branches.size(), 1e-3);
+  const RelaxationResult result = relax(net, with(GetParam()));
+  EXPECT_FALSE(result.converged);
+  EXPECT_NE(result.reason.find("nodes of the film ran together"), std::string::npos) << result.reason;
+}
+
 TEST(DynamicRelaxation, PeriodIsThatOfTheOscillator) {
   // One node between two springs k along their axis: K = 2 k, M = 1.1 K / 2, omega^2 = 2 / 1.1.
   ElasticNet net;

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <formfinding/elastic_nets.hpp>
+#include <formfinding/film_element.hpp>
+#include <formfinding/net_system.hpp>
 #include <random>
 #include <tautline/element/membrane.hpp>
 #include <tautline/formfinding/dynamic_relaxation.hpp>
@@ -227,6 +229,38 @@ TEST(Film, APointThatHoldsItIsNamed) {
   if (!result.converged) {
     EXPECT_NE(result.reason.find("single point, (0, 0, 1.5)"), std::string::npos) << result.reason;
   }
+}
+
+/// Three cells in a row: the middle one of quadrilaterals, or the two triangles of it, pulled over its
+/// neighbour.
+TEST(Film, SidesAtWhichFacetsHaveTurnedOverAreCounted) {
+  Net drawn;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 2; ++j) drawn.nodes.emplace_back(i, j, 0);
+  std::vector<FilmFacet> quadrilaterals, triangles;
+  for (int i = 0; i < 3; ++i) {
+    const int a = 2 * i, b = a + 2, c = a + 3, d = a + 1;
+    quadrilaterals.push_back({{a, b, c, d}, {1, 1}});
+    triangles.push_back({{a, b, c}, {1, 1}});
+    triangles.push_back({{a, c, d}, {1, 1}});
+  }
+  Points found = drawn.nodes;
+  for (const auto* facets : {&quadrilaterals, &triangles})
+    EXPECT_EQ(turned_over(drawn, *facets, to_coordinates(found)), "");
+  found[4].x() = found[5].x() = 0.5;  // the middle cell from x = 1 back to 0.5
+  for (const auto* facets : {&quadrilaterals, &triangles}) {
+    const auto text = turned_over(drawn, *facets, to_coordinates(found));
+    EXPECT_NE(text.find("turned over at 2 sides"), std::string::npos) << text;
+  }
+  // A quadrilateral is what its whole area says, though one of its triangles is upright still.
+  found = drawn.nodes;
+  found[2] = Vec3(-1, 1.5, 0);
+  const Vec3 upright = (found[3] - found[0]).cross(found[1] - found[0]),
+             whole = (found[3] - found[0]).cross(found[1] - found[2]);
+  ASSERT_GT(upright.z(), 0);
+  ASSERT_LT(whole.z(), 0);
+  EXPECT_NE(turned_over(drawn, quadrilaterals, to_coordinates(found)).find("turned over at 1 side"),
+            std::string::npos);
 }
 
 TEST(Film, FacetsOfEitherOrientationAreOneFilm) {

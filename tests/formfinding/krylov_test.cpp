@@ -35,9 +35,11 @@ TEST(Lsqr, EndsAtTheOptimumOfWhatCannotBeMet) {
   MatX matrix = MatX::Zero(3, 2);
   matrix(0, 0) = 1;
   matrix(1, 1) = 2;
-  const auto found = least_squares(Products{matrix}, Vec3(3, 4, 5), 1e-12, 50);
-  EXPECT_LE((found.x - Eigen::Vector2d(3, 2)).norm(), 1e-14);
-  EXPECT_EQ(found.iterations, 2);
+  for (const double unit : {1e-9, 1.0, 1e9}) {
+    const auto found = least_squares(Products{matrix}, unit * Vec3(3, 4, 5), 1e-12, 50);
+    EXPECT_LE((found.x - unit * Eigen::Vector2d(3, 2)).norm(), 1e-14 * unit);
+    EXPECT_EQ(found.iterations, 2);
+  }
 }
 
 TEST(Lsqr, FindsTheSolutionOfSmallestNorm) {
