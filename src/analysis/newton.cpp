@@ -71,16 +71,12 @@ class Tangents {
 
   /// @return whether the tangent has been factored
   bool form(Stability stability) {
-    foretold_ = relative_residual(so_far_.iterations.back().norms) > near;
-    if (!foretold_) {
-      problem_.tangent(workspace_.tangent);
-      return false;
-    }
-    problem_.extrapolated_tangent(workspace_.tangent);
-    if (stability == Stability::any) return false;
-    if (!factor()) return false;
+    const bool far = relative_residual(so_far_.iterations.back().norms) > near;
+    if (!far) problem_.tangent(workspace_.tangent);
+    foretold_ = far && problem_.extrapolated_tangent(workspace_.tangent);
+    if (stability == Stability::any || !factor()) return false;
     if (begun_with_ < 0) begun_with_ = negative();
-    if (negative() <= begun_with_) return true;
+    if (!foretold_ || negative() <= begun_with_) return true;
     problem_.tangent(workspace_.tangent);
     foretold_ = false;
     const bool factored = factor();

@@ -63,7 +63,7 @@ bool System::step_linearly(analysis::Workspace& workspace) {
     right[i] = held()[unknown] ? 0.0 : -right[i] - resistance[unknown];
   }
   f.write(right);
-  extrapolated_tangent(workspace.tangent);
+  wholly_extrapolated_tangent(workspace.tangent);
   if (!workspace.solver.factor(workspace.tangent)) return false;
   la::solve(workspace.solver, skew_part(), f, x);
   accept(x);

@@ -258,7 +258,16 @@ Contribution System::foretold(const Element& element) const {
   return answer(state_, element, Want::tangent);
 }
 
-void System::extrapolated_tangent(la::SymmetricMatrix& k) {
+/// Of beams only: shells, however short the step, may land in another dent.
+bool System::extrapolated_tangent(la::SymmetricMatrix& k) {
+  assemble_tangent(k, [&](const auto& element) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(element)>, model::Beam>) return foretold(element);
+    return answer(state_, element, Want::tangent);
+  });
+  return last_motion_ && !model_.beams.empty();
+}
+
+void System::wholly_extrapolated_tangent(la::SymmetricMatrix& k) {
   assemble_tangent(k, [&](const auto& element) { return foretold(element); });
 }
 

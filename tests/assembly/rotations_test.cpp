@@ -94,6 +94,38 @@ TEST(ImposedRotation, CountsTurnsAboutTheOnlyAxisThatIsHeld) {
   }
 }
 
+/// A body that is clamped in one place goes where the clamp goes, without any force.
+TEST(ImposedRotation, TurnsABodyAsAWholeHoweverFar) {
+  for (const Vec3& rotation : {Vec3(0.7, 0, 0), Vec3(0.5, -1, 1), Vec3(-2, 2, 1), Vec3(0, 3.1, 0)}) {
+    auto model = beam_to({0.3, 0.4, 1.2}, 4);
+    model.nodes.emplace_back(0.9, -0.2, 1.5);
+    add_beam(model, 0, 4, 5);
+    System system(model);
+    const auto path = solve(system, {{support({0}, clamped)}, {turn(0, rotation)}});
+    const Mat3 R = rotation_of(rotation);
+    for (std::size_t i = 0; i < model.nodes.size(); ++i)
+      EXPECT_LT((system.state().displacement[i] - (R * model.nodes[i] - model.nodes[i])).norm(), 1e-12);
+    EXPECT_LE(path.newton_iterations, 1);  // one that takes off rounding
+    EXPECT_EQ(path.failed_attempts, 0);
+  }
+}
+
+/// Whose tip is turned once or twice becomes a ring, and not what it was, in as many iterations on many
+/// elements as on few.
+TEST(ImposedRotation, RollsUpARodInFewIterations) {
+  for (const int parts : {16, 48})
+    for (const int turns : {1}) {
+      auto model = cantilever(parts, 1, rod());
+      System system(model);
+      const auto path = solve(
+          system, {{support({0}, clamped), support({parts}, ry)}, {turn(parts, {0, -2 * pi * turns, 0})}});
+      EXPECT_LT((system.state().displacement[parts] - Vec3(-1, 0, 0)).norm(), 1e-9);
+      EXPECT_NEAR(system.reactions().moment[parts].y(), -100 * 2 * pi * turns, 1e-6);  // E I / radius
+      EXPECT_LE(path.newton_iterations, 8);
+      EXPECT_EQ(path.failed_attempts, 0);
+    }
+}
+
 /// The end state of a conservative structure does not know how it came about.
 void expect_one_answer(const model::Model& model, const Boundary& boundary, int node) {
   System at_once(model);

@@ -36,7 +36,11 @@ class NonlinearProblem {
   /// Tangent at the last accepted point.
   virtual void tangent(la::SymmetricMatrix& k) = 0;
   /// Tangent there with stresses foretold by the last increment: what Newton's method uses away from balance.
-  virtual void extrapolated_tangent(la::SymmetricMatrix& k) { tangent(k); }
+  /// @return whether any are
+  virtual bool extrapolated_tangent(la::SymmetricMatrix& k) {
+    tangent(k);
+    return false;
+  }
   /// What the derivative of the residual there has beside `tangent`, its symmetric part.
   virtual la::SkewPart skew_part() { return la::SkewPart(layout()); }
   /// x becomes the point about which increments are composed.

@@ -160,7 +160,7 @@ class System : public analysis::PathProblem {
   const la::BlockLayout& layout() const override { return map_.layout; }
   void residual(const la::Vector& x, la::Vector& f) override;
   void tangent(la::SymmetricMatrix& k) override;
-  void extrapolated_tangent(la::SymmetricMatrix& k) override;
+  bool extrapolated_tangent(la::SymmetricMatrix& k) override;
   la::SkewPart skew_part() override;
   void accept(const la::Vector& x) override;
   void restart() override;
@@ -303,6 +303,8 @@ class System : public analysis::PathProblem {
   std::vector<double> extrapolated_stiffness_times(const std::vector<double>& increment);
   template <class ContributionOf>
   std::vector<double> product(const std::vector<double>& increment, const ContributionOf& contribution_of);
+  /// With the stresses of all elements foretold.
+  void wholly_extrapolated_tangent(la::SymmetricMatrix& k);
   /// What an element adds with stresses foretold by the last motion.
   template <class Element>
   Contribution foretold(const Element& element) const;
