@@ -176,16 +176,17 @@ class GeometryCheck {
     find(model_.shells, [&](std::size_t i) { return facet_name(model_, n_membranes + i); });
   }
 
-  /// Beside a member that joins two nodes, what else is there is longer by orders of magnitude.
+  /// Against the median of all lengths: long ties to an anchor far away are no reason to doubt the others.
   void find_short() {
-    std::vector<double> longest(model_.nodes.size(), 0);
+    if (lines_.empty()) return;
+    std::vector<double> lengths;
+    for (const auto& line : lines_) lengths.push_back(line.length);
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
     for (const auto& line : lines_)
-      for (const int node : {line.a, line.b}) longest[node] = std::max(longest[node], line.length);
-    for (const auto& line : lines_)
-      if (line.is_member() && line.length < short_member * std::max(longest[line.a], longest[line.b]))
-        finds_.add("short_element", fmt::format("{} is {:.2g} m long, beside members of {:.3g} m",
-                                                line.name(model_, line.index), line.length,
-                                                std::max(longest[line.a], longest[line.b])));
+      if (line.is_member() && line.length < short_member * *middle)
+        finds_.add("short_element", fmt::format("{} is {:.2g} m long, half of all members {:.3g} m or more",
+                                                line.name(model_, line.index), line.length, *middle));
   }
 
   /// Lines come first, then nodes.
