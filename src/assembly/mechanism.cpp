@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -37,7 +38,9 @@ class SoftestMotion {
     for (int i = 0; i < most_rounds; ++i) {
       const double last = stiffness_;
       advance();
-      if (stiffness_ <= null || (i > 3 && std::abs(stiffness_ - last) <= 1e-3 * stiffness_)) return;
+      if (stiffness_ <= null || std::isinf(stiffness_) ||
+          (i > 3 && std::abs(stiffness_ - last) <= 1e-3 * stiffness_))
+        return;
     }
   }
 
@@ -63,7 +66,12 @@ class SoftestMotion {
     solver_.solve(motion_, next_);
     motion_.copy(next_);
     next_.multiply_entries(weight_);
-    motion_.scale(1 / std::sqrt(motion_.dot(next_)));
+    const double size = std::sqrt(motion_.dot(next_));
+    if (!(size > 0) || !std::isfinite(size)) {  // nothing is free to move
+      stiffness_ = std::numeric_limits<double>::infinity();
+      return;
+    }
+    motion_.scale(1 / size);
     stiffness_ = std::abs(system_.second_variation(motion_));
   }
 

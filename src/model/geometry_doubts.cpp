@@ -126,6 +126,7 @@ class GeometryCheck {
   void add_line(int a, int b, std::string (*name)(const Model&, std::size_t), std::size_t index) {
     const double length = (model_.nodes[b] - model_.nodes[a]).norm();
     lines_.push_back({a, b, length, name, index});
+    sides_.insert({std::min(a, b), std::max(a, b)});
     shortest_[a] = std::min(shortest_[a], length);
     shortest_[b] = std::min(shortest_[b], length);
   }
@@ -137,12 +138,11 @@ class GeometryCheck {
         add_line(cable.nodes[0], cable.nodes[1], cable_name, i);
     for (std::size_t i = 0; i < model_.beams.size(); ++i)
       add_line(model_.beams[i].nodes[0], model_.beams[i].nodes[1], beam_name, i);
-    std::set<std::array<int, 2>> sides;
     const auto add_sides = [&](const auto& facets) {
       for (const auto& facet : facets)
         for (int k = 0, n = facet.nodes.size(); k < n; ++k) {
           const int a = facet.nodes[k], b = facet.nodes[(k + 1) % n];
-          if (sides.insert({std::min(a, b), std::max(a, b)}).second) add_line(a, b, nullptr, 0);
+          if (!sides_.contains({std::min(a, b), std::max(a, b)})) add_line(a, b, nullptr, 0);
         }
     };
     add_sides(model_.membranes);
@@ -176,16 +176,17 @@ class GeometryCheck {
     find(model_.shells, [&](std::size_t i) { return facet_name(model_, n_membranes + i); });
   }
 
-  /// Beside a member that joins two nodes, what else is there is longer by orders of magnitude.
+  /// Against the median of all lengths: long ties to an anchor far away are no reason to doubt the others.
   void find_short() {
-    std::vector<double> longest(model_.nodes.size(), 0);
+    if (lines_.empty()) return;
+    std::vector<double> lengths;
+    for (const auto& line : lines_) lengths.push_back(line.length);
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
     for (const auto& line : lines_)
-      for (const int node : {line.a, line.b}) longest[node] = std::max(longest[node], line.length);
-    for (const auto& line : lines_)
-      if (line.is_member() && line.length < short_member * std::max(longest[line.a], longest[line.b]))
-        finds_.add("short_element", fmt::format("{} is {:.2g} m long, beside members of {:.3g} m",
-                                                line.name(model_, line.index), line.length,
-                                                std::max(longest[line.a], longest[line.b])));
+      if (line.is_member() && line.length < short_member * *middle)
+        finds_.add("short_element", fmt::format("{} is {:.2g} m long, half of all members {:.3g} m or more",
+                                                line.name(model_, line.index), line.length, *middle));
   }
 
   /// Lines come first, then nodes.
@@ -235,8 +236,17 @@ class GeometryCheck {
            joined(one.b, other.b);
   }
 
+  /// Diagonals of one panel pass each other by custom: three of its four sides, or more, are members or lie
+  /// between two supports.
+  bool brace(const Line& one, const Line& other) {
+    const auto side = [&](int a, int b) {
+      return (held_[a] && held_[b]) || sides_.contains({std::min(a, b), std::max(a, b)});
+    };
+    return side(one.a, other.a) + side(one.a, other.b) + side(one.b, other.a) + side(one.b, other.b) >= 3;
+  }
+
   bool cross(const Line& one, const Line& other) {
-    if (share(one, other)) return false;
+    if (share(one, other) || brace(one, other)) return false;
     const Vec3 &p = model_.nodes[one.a], &q = model_.nodes[other.a];
     const auto [distance, s, t] = nearest_points(p, model_.nodes[one.b] - p, q, model_.nodes[other.b] - q);
     const double end = touching;
@@ -295,6 +305,7 @@ class GeometryCheck {
   std::vector<double> shortest_;  // member or side at each node
   std::vector<bool> held_;
   std::vector<Line> lines_;
+  std::set<std::array<int, 2>> sides_;  // whose ends a member or the side of a facet joins
   Finds finds_;
 };
 

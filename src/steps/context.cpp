@@ -135,7 +135,8 @@ void Context::warn_of_inputs() {
 }
 
 void Context::warn_of_geometry() {
-  if (std::exchange(geometry_looked_at_, true)) return;
+  if (std::exchange(geometry_looked_at_, true) || !deck.model)
+    return;  // reflectors are made as they are meant
   warn(model::geometry_doubts(structure));
 }
 

@@ -88,10 +88,11 @@ Json accelerations_json(const assembly::System& system) {
 }  // namespace
 
 std::vector<Part> parts_of(Context& context, const EquilibriumOptions& options) {
+  const auto& model = context.system().model();
   std::vector<Part> parts;
   for (const auto& stage : options.stages) parts.push_back({stage, {}});
   if (parts.empty()) parts.push_back({{"supports only", {}, {}}, {}});
-  parts.back().loads = options.loads ? *options.loads : names_of(context.system().model().loads);
+  parts.back().loads = options.loads ? *options.loads : names_of(model.loads);
   if (options.control == Control::arc_length) {
     Part rest = parts.back();
     rest.stage.name += ", at rest";

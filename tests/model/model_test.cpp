@@ -90,7 +90,7 @@ TEST(Validation, NamesACableOfZeroLength) {
 
 TEST(Validation, NamesANodeThatBelongsToNoElement) {
   const auto message = complaint([](Model& m) { m.nodes.emplace_back(5, 5, 5); });
-  EXPECT_TRUE(mentions(message, "node 6 belongs to no element"));
+  EXPECT_TRUE(mentions(message, "node 6 at (5, 5, 5) belongs to no element"));
 }
 
 TEST(Validation, NamesAnElementWhoseNodeDoesNotExist) {

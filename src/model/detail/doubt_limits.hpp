@@ -24,7 +24,7 @@ constexpr double largest_structure = 5e3;   ///< [m]; spans of bridges reach 2 k
 constexpr double largest_acceleration = 1e3;                        ///< [m/s^2]
 constexpr double lowest_cooling = -293.15, highest_heating = 4000;  ///< [K]
 constexpr double touching = 1e-3;      ///< distance of nodes over the shortest member there
-constexpr double short_member = 1e-4;  ///< length over that of the shortest member beside it
+constexpr double short_member = 1e-4;  ///< length over the median of all
 constexpr double meeting = 1e-4;       ///< distance of axes over the shorter of two members
 
 }  // namespace tautline::model::detail
