@@ -164,7 +164,8 @@ class Driver {
   NewtonSummary go_downhill(double aim, bool slack, NewtonSummary newton) {
     auto there = problem_.keep();
     NewtonSummary found;
-    for (const Way way : slack ? std::vector{Way::soft, Way::stiff, Way::relaxed} : std::vector{Way::stiff, Way::soft}) {
+    for (const Way way :
+         slack ? std::vector{Way::soft, Way::stiff, Way::relaxed} : std::vector{Way::stiff, Way::soft}) {
       problem_.roll_back();
       approach(problem_, workspace_, aim);
       found = go(way, aim);

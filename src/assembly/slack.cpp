@@ -121,8 +121,8 @@ class Stiffened {
 
 constexpr double some = 1e-8, less = 1e-11;  // of a node's stiffness when taut
 
-/// Whether what acts has a part in a motion without resistance: then the added stiffness takes the same force,
-/// however little it is; else a force in proportion to it.
+/// Whether what acts has a part in a motion without resistance: then the added stiffness takes the same
+/// force, however little it is; else a force in proportion to it.
 bool load_feels(System& system, Stiffened& stiffened, const std::vector<int>& nodes) {
   const auto acting = system.applied().force;
   const la::Vector load = on_nodes(system, nodes, [&](int node, int block) -> Vec3 {
@@ -142,7 +142,8 @@ std::vector<int> moving(System& system, Stiffened& stiffened, const std::vector<
   constexpr double share = 0.1;
   std::vector<double> rest;
   const la::Vector odd = on_nodes(system, nodes, [](int node, int) -> Vec3 {
-    return {1 + 0.5 * std::sin(1.7 * node), 1 + 0.5 * std::sin(2.3 * node + 1), 1 + 0.5 * std::sin(2.9 * node + 2)};
+    return {1 + 0.5 * std::sin(1.7 * node), 1 + 0.5 * std::sin(2.3 * node + 1),
+            1 + 0.5 * std::sin(2.9 * node + 2)};
   });
   stiffened.factor(less);
   stiffened.taken(odd, less).gather(rest);
@@ -179,7 +180,8 @@ void tell(const model::Model& model, const Elements& elements, const std::vector
   std::map<int, std::size_t> by_group;
   for (const int i : indices) ++by_group[elements[static_cast<std::size_t>(i)].group];
   for (const auto& [group, n] : by_group)
-    parts.push_back(fmt::format("{} of {}", count(n, what), model.groups[static_cast<std::size_t>(group)].name));
+    parts.push_back(
+        fmt::format("{} of {}", count(n, what), model.groups[static_cast<std::size_t>(group)].name));
 }
 
 std::string sentence(const System& system, const Slack& slack) {
@@ -207,7 +209,8 @@ std::optional<Slack> find_slack(System& system, analysis::Workspace& workspace) 
   if (loose.empty()) return std::nullopt;
   Stiffened stiffened(system, workspace, loose);
   Slack slack;
-  const bool only_slack = stiffened.factor(some), matters = !only_slack || load_feels(system, stiffened, loose);
+  const bool only_slack = stiffened.factor(some),
+             matters = !only_slack || load_feels(system, stiffened, loose);
   if (!matters) slack.nodes = moving(system, stiffened, loose);
   system.tangent(workspace.tangent);
   workspace.solver.factor(workspace.tangent);

@@ -49,7 +49,8 @@ double missing_stiffness(const model::Model& model, const model::State& state, c
 
 double missing_stiffness(const model::Model& model, const model::State& state, const model::Membrane& sheet) {
   auto section = model.groups[sheet.group].membrane;
-  const bool taut = sheet.nodes.size() == 3 ? is_taut<3>(model, state, sheet) : is_taut<4>(model, state, sheet);
+  const bool taut =
+      sheet.nodes.size() == 3 ? is_taut<3>(model, state, sheet) : is_taut<4>(model, state, sheet);
   if (taut) return 0;
   double side = 0, area = 0;
   for (int k = 0, n = sheet.nodes.size(); k < n; ++k) {
@@ -85,7 +86,8 @@ bool System::taut_stiffness(la::Vector& sums) const {
 
 double System::soften(double limit) {
   if (own_) {
-    for (std::size_t i = 0; i < model_.cables.size(); ++i) model_.cables[i].stiffness_factor = own_->factor[i];
+    for (std::size_t i = 0; i < model_.cables.size(); ++i)
+      model_.cables[i].stiffness_factor = own_->factor[i];
     for (const auto& [group, section] : own_->sheet) model_.groups[group].membrane = section;
     support_stiffness_ = own_->support;
     own_.reset();

@@ -55,7 +55,8 @@ Block make_mesh() {
        "subdivisions", [](MeshOptions & o) -> auto& { return o.subdivide.subdivisions; })
       .at_least(1)
       .says(
-          "Parts of each facet side, of the cables on it and of the beams; of other cables if they are longer "
+          "Parts of each facet side, of the cables on it and of the beams; of other cables if they are "
+          "longer "
           "than drawn, or if there are neither facets nor beams.");
   b.choice(
        "pattern", [](MeshOptions & o) -> auto& { return o.subdivide.pattern; },

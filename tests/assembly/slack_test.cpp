@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include <gtest/gtest.h>
 #include <tautline/analysis/descent.hpp>
 
@@ -12,7 +14,8 @@ namespace {
 
 using namespace testing_models;
 
-/// Cables drawn straight from (0, 0, 0) to (10, 0, 0), each `ratio` times as long as drawn, turned about (1, 1, 1).
+/// Cables drawn straight from (0, 0, 0) to (10, 0, 0), each `ratio` times as long as drawn, turned about (1,
+/// 1, 1).
 model::Model straight_chain(int links, double ratio, double stiffness) {
   model::Model model;
   const Mat3 turn = Eigen::AngleAxisd(1, Vec3(1, 1, 1).normalized()).toRotationMatrix();
@@ -93,7 +96,8 @@ TEST(Slack, AStartThatGivesWayIsOneOfSlackCablesNotOfLooseFrames) {
   const int guys = add_cable_group(mast, "guys");
   mast.nodes.emplace_back(2, 3, 0);
   add_cable(mast, guys, 4, 5, -0.1);
-  EXPECT_FALSE(gives(mast, {{support({0, 5})}, {load(4, Vec3(0, 0, -1))}})) << "it turns about its axis all the same";
+  EXPECT_FALSE(gives(mast, {{support({0, 5})}, {load(4, Vec3(0, 0, -1))}}))
+      << "it turns about its axis all the same";
 }
 
 /// A taut cable from node 0 to 1 and on to 2, and a slack one from there by node 3 to 4.

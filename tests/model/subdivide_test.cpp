@@ -391,7 +391,8 @@ TEST(Subdivide, ASlackCableBesideABeamIsNotTiedToIt) {
     if (beam.parent == 1) of_beam.insert(beam.nodes.begin(), beam.nodes.end());
   EXPECT_EQ(of_cable.size(), 4u);
   std::vector<int> both;
-  std::set_intersection(of_cable.begin(), of_cable.end(), of_beam.begin(), of_beam.end(), std::back_inserter(both));
+  std::set_intersection(of_cable.begin(), of_cable.end(), of_beam.begin(), of_beam.end(),
+                        std::back_inserter(both));
   EXPECT_EQ(both, (std::vector<int>{0, 4}));
 }
 

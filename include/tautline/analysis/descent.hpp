@@ -25,8 +25,8 @@ DescentSummary descend(NonlinearProblem& problem, Workspace& workspace, const Ne
                        const IterationCallback& callback = {});
 
 /// @brief The same from where elements that only pull are slack, or so far from rest that their stiffness
-/// hides the way: first with elements as soft as the forces out of balance, which rest soon, then with stiffer
-/// ones from there, and so on to their own stiffness. Collective.
+/// hides the way: first with elements as soft as the forces out of balance, which rest soon, then with
+/// stiffer ones from there, and so on to their own stiffness. Collective.
 ///
 /// Cables and sheets turn on their way to rest; a stiff one lets an end go round the other only by tiny
 /// straight steps, a soft one by large ones.
