@@ -109,7 +109,7 @@ TEST(InputDoubts, TellOfInitialStrainsThatNothingBears) {
   EXPECT_EQ(codes(doubts), Codes{"strain"});
   EXPECT_EQ(doubts[0].where, "group \"stay\"");
   EXPECT_TRUE(mentions(doubts[0].message, "8e+03 %"));
-  model.cables[1].initial_strain = 0.15;
+  model.cables[1].initial_strain = 0.8;
   EXPECT_EQ(codes(input_doubts(model, steel())), Codes());
 }
 
@@ -268,9 +268,10 @@ TEST(GeometryDoubts, TellOfFacetsUnderPressureThatFaceDifferentSides) {
   EXPECT_EQ(codes(geometry_doubts(without)), Codes());
 }
 
-// 100 000 cables of a square net in less than a second, with one crossing among them.
+// 20 000 cables of a net in a fraction of a second (compared with each other they would take minutes), with
+// one crossing among them.
 TEST(GeometryDoubts, OfALargeNetTakeNoTime) {
-  constexpr int n = 224;
+  constexpr int n = 100;
   Model model;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) model.nodes.emplace_back(i, j, 1e-3 * i * j);
@@ -314,15 +315,15 @@ TEST(StateDoubts, TellOfAMemberBeyondItsEulerLoad) {
 TEST(StateDoubts, TellOfStrains) {
   const auto model = stayed_mast();
   auto response = at_rest(model);
-  response.cables[0].tension = 0.19 * 1.6e7;
+  response.cables[0].tension = 0.9 * 1.6e7;
   EXPECT_EQ(codes(state_doubts(model, response)), Codes());
-  response.cables[0].tension = 0.3 * 1.6e7;
-  response.cables[1].tension = 0.4 * 1.6e7;
+  response.cables[0].tension = 3 * 1.6e7;
+  response.cables[1].tension = 4 * 1.6e7;
   const auto doubts = state_doubts(model, response);
   ASSERT_EQ(codes(doubts), Codes{"strain"});
   EXPECT_TRUE(mentions(doubts[0].message,
                        "cable 2 of group \"stay\", from node \"west\" to node \"top\" is strained "
-                       "by 40 % (the worst of 2)"));
+                       "by 400 % (the worst of 2)"));
 }
 
 }  // namespace
