@@ -233,9 +233,12 @@ Mat3 InertiaRelief::mean_rotation(const Body& body, const model::State& state, c
 }
 
 model::State InertiaRelief::centred(model::State state) const {
+  constexpr double in_place = 1e-12;  // rounding of the mean must not shake what is at rest
   for (const Body& body : bodies_) {
     const Vec3 centre = centre_of(body, state);
     const Mat3 back = mean_rotation(body, state, centre).transpose();
+    if (rotation_vector(back).norm() <= in_place && (centre - body.centre).norm() <= in_place * body.size)
+      continue;
     for (const int node : body.nodes) {
       const auto at = static_cast<std::size_t>(node);
       const Vec3 arm = model_.nodes[at] + state.displacement[at] - centre;

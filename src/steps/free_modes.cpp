@@ -201,11 +201,12 @@ class ShiftSearch {
   bool is_first_ = true;
 };
 
-/// Whether a motion meets no resistance: strain energy at the level of the rounding of the stiffness.
-bool is_mechanism(assembly::System& system, const Scaling& scaling, const la::Vector& mode) {
-  constexpr double nothing = 1e-14;
+/// Whether a mode meets no resistance: strain energy at the level of the rounding of the stiffness, or, where
+/// what moves has none at all, far below that of a mode at the shift.
+bool is_mechanism(assembly::System& system, const Scaling& scaling, const la::Vector& mode, double shift) {
+  constexpr double nothing = 1e-14, nothing_at_all = 1e-12;
   const double size = la::sum_over_ranks(scaling.motion(mode).squaredNorm());
-  return std::abs(system.second_variation(mode)) <= nothing * size;
+  return std::abs(system.second_variation(mode)) <= std::max(nothing * size, nothing_at_all * shift);
 }
 
 /// A motion that meets neither stiffness nor mass is taken out of every mode: one unknown that it moves gets
@@ -249,7 +250,7 @@ FreeModes solve_free(assembly::System& system, const la::SymmetricMatrix& stiffn
     auto pairs = la::solve_vibration(stiffness, mass, count + more, -shift, rigid);
     FreeModes result;
     for (std::size_t i = 0; i < pairs.values.size(); ++i) {
-      const bool free = is_mechanism(system, scaling, pairs.vectors[i]);
+      const bool free = is_mechanism(system, scaling, pairs.vectors[i], shift);
       if (!free && static_cast<int>(result.elastic.values.size()) == count) continue;
       move_pair(pairs, i, free ? result.mechanisms : result.elastic);
     }

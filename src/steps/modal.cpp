@@ -111,7 +111,10 @@ la::EigenPairs solve(Context& context, const ModalOptions& options, const la::Sy
   const auto rigid = rigid_modes(system, stiffness, mass);
   entry["rigid_modes"] = rigid.modes.size() + rigid.massless.size();
   entry["mechanisms"] = 0;
-  if (entry["rigid_modes"] == 0) return la::solve_vibration(stiffness, mass, options.modes);
+  if (entry["rigid_modes"] == 0) try {
+      return la::solve_vibration(stiffness, mass, options.modes);
+    } catch (const LibraryError&) {  // no factors: mechanisms, which the next attempt tells
+    }
   auto found = solve_free(system, stiffness, mass, rigid, options.modes);
   entry["mechanisms"] = found.mechanisms.vectors.size();
   if (!found.mechanisms.vectors.empty()) warn_of_mechanisms(context, found.mechanisms);
@@ -154,6 +157,7 @@ Json run_step(Context& context, const ModalOptions& options) {
   entry["frequency_rounding"] = std::sqrt(rounding) / (2 * std::numbers::pi);
   add_effective_masses(system, mass, pairs, entry);
   entry["residuals"] = Json::array();
+  const bool floats = entry["rigid_modes"] != 0;
   auto grid = field_grid(context, model::evaluate_response(system.model(), system.state()));
   grid.point_fields.clear();
   for (int i = 0; i < options.modes; ++i) {
@@ -171,7 +175,11 @@ Json run_step(Context& context, const ModalOptions& options) {
     if (eigenvalue < -rounding) {
       entry["status"] = "not_converged";
       entry["reason"] =
-          fmt::format("mode {} has a negative eigenvalue {:.3e}: the state is unstable", i + 1, eigenvalue);
+          fmt::format("mode {} has a negative eigenvalue {:.3e}: the state is unstable", i + 1, eigenvalue) +
+          (floats && !context.acting_loads.empty()
+               ? "; the structure floats, and its loads keep their direction while it turns: for its "
+                 "vibrations without them, take them off by an equilibrium step with support: free, loads: []"
+               : "");
     }
   }
   warn_of_still_modes(context, entry);
