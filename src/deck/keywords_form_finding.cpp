@@ -18,6 +18,33 @@ void read_members(Reader& reader, const Keyword& keyword, const Node& node, Form
   if (const auto names = reader.names(keyword, node)) options.on = *names;
 }
 
+bool is_length(formfinding::ConstraintKind kind) {
+  return kind == formfinding::ConstraintKind::length ||
+         kind == formfinding::ConstraintKind::unstressed_length;
+}
+
+/// Lengths are positive; tensions and force densities have a size, of soft bounds at least one.
+void check_numbers(Reader& reader, const Node& node, const FormConstraintOptions& options) {
+  if (is_reaction(options.kind)) return;
+  const bool length = is_length(options.kind);
+  const auto refuse = [&](const char* key, double number) {
+    reader.complain(
+        *node.find(key),
+        fmt::format("{} = {} is not {}", key, format_number(number), length ? "positive" : "a demand"),
+        length ? "expected a number > 0: lengths are"
+               : "expected a number > 0, or < 0 for bars in compression");
+  };
+  if (node.find("value") != nullptr)
+    for (const double number : options.value)
+      if (length ? number <= 0 : number == 0) refuse("value", number);
+  const bool sized = options.min.value_or(0) != 0 || options.max.value_or(0) != 0;
+  if (options.min && (length ? *options.min <= 0 : !sized)) refuse("min", *options.min);
+  if (options.max && (length ? *options.max <= 0 : !sized)) refuse("max", *options.max);
+  if (options.min && options.max && *options.max < *options.min)
+    reader.complain(*node.find("max"), fmt::format("max = {} is below min = {}", format_number(*options.max),
+                                                   format_number(*options.min)));
+}
+
 void check_constraint(Reader& reader, const Node& node, FormConstraintOptions& options) {
   const Node* on = node.find("on");
   if (on != nullptr) {
@@ -29,17 +56,18 @@ void check_constraint(Reader& reader, const Node& node, FormConstraintOptions& o
   }
   const Node* value = node.find("value");
   const bool equal = options.kind == formfinding::ConstraintKind::equal_tension;
-  if (equal && value != nullptr)
-    reader.complain(value->label, "\"value\" does not fit an equal tension, which is unknown",
+  const bool range = options.min || options.max;
+  if (equal && (value != nullptr || range))
+    reader.complain(value != nullptr ? value->label : node.label,
+                    fmt::format("\"{}\" does not fit an equal tension, which is unknown",
+                                value != nullptr ? "value" : "min, max"),
                     reader.context(), {}, "kind: tension prescribes it");
-  if (!equal && value == nullptr)
-    reader.complain(node.label, "missing key \"value\"", reader.context(),
-                    "expected a number for all, or a list with one for each");
-  if (value != nullptr && !is_reaction(options.kind))
-    for (const double number : options.value)
-      if (!(number > 0))
-        reader.complain(*value, fmt::format("value = {} is not positive", format_number(number)),
-                        "expected a number > 0: tensions and lengths are");
+  if (!equal && (value == nullptr) != range)
+    reader.complain(node.label, range ? "\"value\" beside \"min\" or \"max\"" : "missing key \"value\"",
+                    reader.context(),
+                    "expected a number for all, or a list with one for each; or, in place of it, min, max or "
+                    "both");
+  check_numbers(reader, node, options);
 }
 
 const BlockSet& constraint_blocks() {
@@ -52,6 +80,7 @@ const BlockSet& constraint_blocks() {
              std::vector<std::pair<std::string, Kind>>{{"tension", tension},
                                                        {"length", length},
                                                        {"unstressed_length", unstressed_length},
+                                                       {"force_density", force_density},
                                                        {"equal_tension", equal_tension},
                                                        {"reaction_x", reaction_x},
                                                        {"reaction_y", reaction_y},
@@ -63,8 +92,23 @@ const BlockSet& constraint_blocks() {
         .required()
         .says("Cable groups; for reactions groups of supported nodes.");
     b.key("value", &FormConstraintOptions::value)
-        .in("N or m")
-        .says("One number for all, or a list with one for each cable or node.");
+        .in("N, m or N/m")
+        .by_default("required but for equal_tension, or min and max")
+        .says("One number for all, or a list with one for each cable or node; tensions of bars may be < 0.");
+    b.key("min", &FormConstraintOptions::min)
+        .in("N, m or N/m")
+        .by_default("none")
+        .says("In place of value, a soft bound: what is found shall not be less.");
+    b.key("max", &FormConstraintOptions::max)
+        .in("N, m or N/m")
+        .by_default("none")
+        .says("In place of value, a soft bound: what is found shall not be more.");
+    b.key("weight", &FormConstraintOptions::weight)
+        .above(0)
+        .says(
+            "How much this demand counts where not all can be met: factor of the squares of its deviations, "
+            "each "
+            "divided by what is asked for (reactions and equal tensions by the largest force asked for).");
     b.check(check_constraint);
     return BlockSet{"steps.form_finding.constraints", "Demands on a net.", {b.take()}, {}};
   }();
@@ -77,6 +121,10 @@ const BlockSet& bounds_blocks() {
     b.key("on", &FormBoundsOptions::on).refers("cable or bar group").required().says("Cable groups.");
     b.key("min", &FormBoundsOptions::min).in("N/m").by_default("none").says("Least force density.");
     b.key("max", &FormBoundsOptions::max).in("N/m").by_default("none").says("Greatest force density.");
+    b.key("weight", &FormBoundsOptions::weight)
+        .above(0)
+        .by_default("none: the bound is always kept")
+        .says("Makes the bound a demand that others may outweigh: factor of the squares of its deviations.");
     b.check([](Reader& reader, const Node& node, FormBoundsOptions& options) {
       if (!options.min && !options.max)
         reader.complain(node.label, "bounds without min and max", reader.context(),

@@ -41,6 +41,7 @@ class ClothedNet {
     const auto n = static_cast<Eigen::Index>(net_.net.branches.size());
     net_.held.resize(problem.net.branches.size(), false);
     net_.held.resize(net_.net.branches.size(), true);
+    if (!net_.pulls.empty()) net_.pulls.resize(net_.net.branches.size(), false);
     net_.force_density = VecX::Constant(n, options.initial_force_density);
     if (problem.force_density.size() > 0) net_.force_density.head(n_cables()) = problem.force_density;
     extend(net_.lower, n);
@@ -120,7 +121,7 @@ ConstrainedResult find_form_with_cloth(const ConstrainedNet& problem, const Cons
     ++shapes;
     iterations += found.iterations;
     residual.insert(residual.end(), found.residual.begin(), found.residual.end());
-    if (!found.converged) break;
+    if (!found.converged && !found.least_squares_optimum) break;
     const VecX next = clothed.pull(found.nodes);
     change = (next - pull).cwiseAbs().maxCoeff() / next.cwiseAbs().maxCoeff();
     if (change <= settled || (change <= 100 * settled && change >= last)) break;
@@ -133,8 +134,8 @@ ConstrainedResult find_form_with_cloth(const ConstrainedNet& problem, const Cons
   found.residual = std::move(residual);
   found.cloth_iterations = shapes;
   found.cloth_force_density = clothed.along_cables(pull);
-  if (found.converged && change > 1e-9) {
-    found.converged = false;
+  if (change > 1e-9) {
+    found.converged = found.in_balance = false;
     found.reason = fmt::format(
         "the pull of the cloth still changes by {:.3g} of itself > 1e-9 after {} shapes", change, shapes);
   }

@@ -7,12 +7,16 @@
 #include <cmath>
 #include <formfinding/balance.hpp>
 #include <formfinding/cloth_form.hpp>
+#include <formfinding/compromise.hpp>
 #include <formfinding/constraint_search.hpp>
+#include <formfinding/deviation.hpp>
 #include <formfinding/position_search.hpp>
 #include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <tautline/core/error.hpp>
+#include <tautline/formfinding/node_error.hpp>
 #include <utility>
 
 namespace tautline::formfinding {
@@ -23,21 +27,38 @@ constexpr int dense_rows = 300;      // up to here the step comes from a dense d
 constexpr int largest_dense = 2000;  // rows for which rank and condition are computed on request
 constexpr int many_branches = 2000;  // from here on the positions are the unknowns where they can be
 constexpr double balance_limit =
-    1e-9;                             // of the largest force out of balance, relative to the largest tension
+    1e-9;  // of the largest force out of balance, relative to the largest tension
+constexpr int most_compromising =
+    20000;                            // branches for which positions and force densities are sought together
+constexpr double push_limit = 1e-7;   // of the largest tension, below which a push is rounding
 constexpr double rank_limit = 1e-12;  // singular values below this part of the largest count as zero
 
-bool is_reaction(ConstraintKind kind) {
-  return kind >= ConstraintKind::reaction_x;
+bool is_length(ConstraintKind kind) {
+  return kind == ConstraintKind::length || kind == ConstraintKind::unstressed_length;
 }
 
-const char* word(ConstraintKind kind) {
-  constexpr const char* words[] = {"tension",    "length",     "unstressed length", "equal tension",
-                                   "reaction x", "reaction y", "reaction z"};
-  return words[static_cast<int>(kind)];
-}
-
-std::string describe(const Constraint& constraint) {
-  return fmt::format("{} of {}", word(constraint.kind), constraint.name);
+void check_values(const Constraint& constraint) {
+  const std::size_t values = constraint.value.size();
+  const bool none = constraint.kind == ConstraintKind::equal_tension || constraint.is_range();
+  if (none ? values != 0 : values != 1 && values != constraint.members.size())
+    throw ModelError(fmt::format("{} has {} members, but {} values", describe(constraint),
+                                 constraint.members.size(), values));
+  const bool any = is_reaction(constraint.kind), positive = is_length(constraint.kind);
+  for (const double value : constraint.value)
+    if (!std::isfinite(value) || (!any && value == 0) || (positive && value <= 0))
+      throw ModelError(fmt::format("{} must be {}, not {}", describe(constraint),
+                                   any        ? "a number"
+                                   : positive ? "positive"
+                                              : "a number that is not zero",
+                                   value));
+  if (!(constraint.weight > 0))
+    throw ModelError(
+        fmt::format("the weight of {} must be positive, not {}", describe(constraint), constraint.weight));
+  if (constraint.least && constraint.most && *constraint.least > *constraint.most)
+    throw ModelError(fmt::format("{}: its least value {:.6g} is above its greatest {:.6g}",
+                                 describe(constraint), *constraint.least, *constraint.most));
+  if (constraint.is_range() && !any && !(constraint.size(0) > 0))
+    throw ModelError(fmt::format("{} has bounds of no size", describe(constraint)));
 }
 
 void check_members(const ConstrainedNet& problem, const Constraint& constraint) {
@@ -49,20 +70,12 @@ void check_members(const ConstrainedNet& problem, const Constraint& constraint) 
     if (member < 0 || member >= static_cast<int>(count))
       throw ModelError(fmt::format("{} names {} {}, but the net has {}", describe(constraint),
                                    nodes ? "node" : "branch", member, count));
-  const std::size_t values = constraint.value.size();
-  if (constraint.kind == ConstraintKind::equal_tension ? values != 0
-                                                       : values != 1 && values != constraint.members.size())
-    throw ModelError(fmt::format("{} has {} members, but {} values", describe(constraint),
-                                 constraint.members.size(), values));
-  for (const double value : constraint.value)
-    if (!std::isfinite(value) || (!nodes && value <= 0))
-      throw ModelError(
-          fmt::format("{} must be {}, not {}", describe(constraint), nodes ? "a number" : "positive", value));
+  check_values(constraint);
 }
 
 /// A length between two fixed nodes is no free choice.
 void check_fixed_length(const ConstrainedNet& problem, const Constraint& constraint) {
-  if (constraint.kind != ConstraintKind::length) return;
+  if (constraint.kind != ConstraintKind::length || constraint.is_range()) return;
   for (std::size_t k = 0; k < constraint.members.size(); ++k) {
     const auto [i, j] = problem.net.branches[constraint.members[k]];
     if (!problem.net.fixed[i] || !problem.net.fixed[j]) continue;
@@ -93,12 +106,12 @@ void check_reaction(const ConstrainedNet& problem, const Constraint& constraint)
 void check_repeated(const ConstrainedNet& problem) {
   std::map<std::pair<ConstraintKind, int>, const Constraint*> seen;
   for (const Constraint& constraint : problem.constraints) {
-    if (constraint.kind == ConstraintKind::equal_tension) continue;
+    if (constraint.kind == ConstraintKind::equal_tension || constraint.is_range()) continue;
     for (const int member : constraint.members) {
       const auto [it, first] = seen.try_emplace({constraint.kind, member}, &constraint);
       if (!first)
         throw ModelError(fmt::format("{} and {} both set the {} of {} {}", describe(*it->second),
-                                     describe(constraint), word(constraint.kind),
+                                     describe(constraint), to_string(constraint.kind),
                                      is_reaction(constraint.kind) ? "node" : "branch", member));
     }
   }
@@ -148,7 +161,7 @@ double force_scale(const ConstrainedNet& problem, const NetState& start) {
   double scale = 0;
   for (const Constraint& constraint : problem.constraints)
     if (constraint.kind == ConstraintKind::tension || is_reaction(constraint.kind))
-      for (const double value : constraint.value) scale = std::max(scale, std::abs(value));
+      for (std::size_t k = 0; k < constraint.members.size(); ++k) scale = std::max(scale, constraint.size(k));
   if (scale > 0) return scale;
   scale = start.force_density.cwiseProduct(start.length).lpNorm<Eigen::Infinity>();
   return scale > 0 ? scale : 1;
@@ -160,7 +173,7 @@ VecX tensions_only(const ConstrainedNet& problem) {
   const auto m = static_cast<Eigen::Index>(problem.net.branches.size());
   VecX tension = VecX::Constant(m, std::numeric_limits<double>::quiet_NaN());
   for (const Constraint& constraint : problem.constraints) {
-    if (constraint.kind != ConstraintKind::tension) return {};
+    if (constraint.kind != ConstraintKind::tension || constraint.is_range()) return {};
     for (std::size_t k = 0; k < constraint.members.size(); ++k)
       tension[constraint.members[k]] = constraint.value[constraint.value.size() == 1 ? 0 : k];
   }
@@ -172,6 +185,33 @@ VecX tensions_only(const ConstrainedNet& problem) {
   return bounded || problem.constraints.empty() ? VecX() : tension;
 }
 
+/// The given nodes, on their guides.
+Coordinates given_nodes(const Net& net) {
+  Coordinates nodes = to_coordinates(net.nodes);
+  for (const Guide& guide : net.guides) {
+    const Vec3 along = guide.direction.normalized(), arm = net.nodes[guide.node] - guide.point;
+    const Vec3 kept =
+        guide.kind == Guide::Kind::line ? Vec3(along * along.dot(arm)) : Vec3(arm - along * along.dot(arm));
+    nodes.row(guide.node) = guide.point + kept;
+  }
+  return nodes;
+}
+
+/// Force densities of the tensions asked for in the given shape, else those to start from.
+VecX given_density(const ConstrainedNet& problem, VecX q) {
+  const Coordinates vectors = branch_vectors(problem.net, given_nodes(problem.net));
+  for (const Constraint& constraint : problem.constraints) {
+    if (constraint.kind != ConstraintKind::tension) continue;
+    for (std::size_t k = 0; k < constraint.members.size(); ++k) {
+      const int b = constraint.members[k];
+      const double length = vectors.row(b).norm();
+      if (length > 0 && (problem.held.empty() || !problem.held[b]))
+        q[b] = constraint.wanted(k, q[b] * length) / length;
+    }
+  }
+  return q;
+}
+
 class FormSearch {
  public:
   FormSearch(const ConstrainedNet& problem, const ConstrainedOptions& options)
@@ -180,25 +220,37 @@ class FormSearch {
                  ? problem.force_density
                  : VecX::Constant(static_cast<Eigen::Index>(problem.net.branches.size()),
                                   options.initial_force_density);
+    // A member asked to push starts as one: on the way there it would pass a net that hangs on nothing.
+    for (const Constraint& constraint : problem.constraints)
+      for (std::size_t k = 0; k < constraint.members.size(); ++k)
+        if (constraint.kind == ConstraintKind::tension &&
+            constraint.wanted(k, 0) * start_[constraint.members[k]] < 0)
+          start_[constraint.members[k]] *= -1;
   }
 
   ConstrainedResult run();
 
  private:
   bool try_positions();
+  SearchSettings search_settings() const;
   void search();
   ConstraintRows rows(const NetState& state) const;
   void take_shape(const NetState& state);
+  /// Why the search that ended has not converged, if so.
   void judge(ConstraintSearch& search);
-  void list_worst(const ConstraintRows& rows, const VecX& missing);
+  void blame(const ConstraintRows& rows, const std::string& end);
   void find_rank(ConstraintSearch& search);
-  std::string short_path() const;
+  /// The least weighted squares, from where the search ended and from the given nodes.
+  /// @return whether there is an answer
+  bool compromise(const NetState* end);
+  std::optional<CompromiseResult> best_compromise(const NetState* end) const;
+  bool pushes(const ConstrainedResult& found) const;
 
   const ConstrainedNet& problem_;
   const ConstrainedOptions& options_;
   NetSystem system_;
   VecX start_;
-  double force_scale_ = 1;
+  double force_scale_ = 0;  ///< see force_scale(); 0: not known yet [N]
   ConstrainedResult result_;
 };
 
@@ -219,8 +271,14 @@ void FormSearch::take_shape(const NetState& state) {
   Balance at_nodes = balance(system_, state);
   result_.reaction = std::move(at_nodes.reaction);
   result_.out_of_balance = at_nodes.out_of_balance;
-  system_.factorise(state.force_density);
-  result_.warnings = stability_warnings(system_, state);
+  try {
+    system_.factorise(state.force_density);
+    result_.warnings = stability_warnings(system_, state);
+  } catch (const NodeError&) {  // it was not found from its force densities alone
+    result_.warnings = {
+        "with its force densities held, the net could take other shapes as well: only the stiffness of its "
+        "members keeps it in the one found"};
+  }
 }
 
 bool FormSearch::try_positions() {
@@ -246,7 +304,7 @@ bool FormSearch::try_positions() {
   result_.inner_iterations = found.inner_iterations;
   for (const double force : found.residual) result_.residual.push_back(force / largest);
   result_.step_relaxation = found.relaxation;
-  result_.converged = found.converged;
+  result_.converged = result_.in_balance = found.converged;
   take_shape(found.state);
   result_.n_rows = static_cast<int>(rows(found.state).value.size());
   result_.reason = fmt::format("largest force out of balance {:.3g} N {} {:.3g} N", result_.out_of_balance,
@@ -254,10 +312,7 @@ bool FormSearch::try_positions() {
   return true;
 }
 
-void FormSearch::search() {
-  system_.factorise(start_);
-  force_scale_ = force_scale(problem_, system_.equilibrium(start_));
-  const bool dense = options_.step_solver == StepSolver::dense;
+SearchSettings FormSearch::search_settings() const {
   SearchSettings settings;
   settings.tolerance = options_.tolerance;
   settings.max_iterations = options_.max_iterations;
@@ -265,8 +320,18 @@ void FormSearch::search() {
   settings.held = problem_.held;
   settings.lower = problem_.lower;
   settings.upper = problem_.upper;
-  const int n_rows = static_cast<int>(rows(system_.equilibrium(start_)).value.size());
-  settings.dense = dense || (options_.step_solver == StepSolver::automatic && n_rows <= dense_rows);
+  int n_rows = 0;
+  for (const Constraint& constraint : problem_.constraints)
+    n_rows += static_cast<int>(constraint.members.size());
+  settings.dense = options_.step_solver == StepSolver::dense ||
+                   (options_.step_solver == StepSolver::automatic && n_rows <= dense_rows);
+  return settings;
+}
+
+void FormSearch::search() {
+  system_.factorise(start_);
+  force_scale_ = force_scale(problem_, system_.equilibrium(start_));
+  const SearchSettings settings = search_settings();
   ConstraintSearch search(
       system_,
       [&](const NetState& state) {
@@ -281,19 +346,22 @@ void FormSearch::search() {
     result_.coordinate_norm.push_back(coordinate_norm(system_, search.state()));
   });
   result_.method = settings.dense ? "dense" : "lsqr";
-  result_.n_rows = n_rows;
+  result_.n_rows = static_cast<int>(search.missing().size());
   result_.iterations = search.iterations();
   result_.inner_iterations = search.inner_iterations();
   result_.step_relaxation = search.relaxation();
   take_shape(search.state());
   judge(search);
-  if (n_rows > 0) find_rank(search);
+  if (result_.n_rows > 0) find_rank(search);
+  const bool ended = search.stuck() || search.iterations() >= ConstrainedOptions{}.max_iterations;
+  if ((!search.met() && ended) || (result_.converged && pushes(result_))) compromise(&search.state());
 }
 
 void FormSearch::judge(ConstraintSearch& search) {
   const double largest_tension = result_.tension.size() > 0 ? result_.tension.cwiseAbs().maxCoeff() : 0.0;
   const double balanced = balance_limit * largest_tension;
-  result_.converged = search.met() && result_.out_of_balance <= balanced;
+  result_.in_balance = result_.out_of_balance <= balanced;
+  result_.converged = search.met() && result_.in_balance;
   if (result_.converged) {
     result_.reason =
         fmt::format("largest scaled residual {:.3g} <= {:.3g}", search.error(), options_.tolerance);
@@ -305,32 +373,91 @@ void FormSearch::judge(ConstraintSearch& search) {
                     result_.out_of_balance, balanced);
     return;
   }
-  list_worst(search.rows(), search.missing());
   result_.least_squares_optimum = search.stationary(1e-5);
+  blame(search.rows(), search.stuck() ? "no step reduces the residual after" : "stopped after");
+}
+
+void FormSearch::blame(const ConstraintRows& rows, const std::string& end) {
+  const VecX missing = rows.missing();
+  result_.weighted_squares = weighted_squares(rows, missing);
+  list_deviations(problem_.constraints, rows, missing, options_, result_);
   result_.reason =
-      fmt::format("{} {} iterations: largest scaled residual {:.3g} > {:.3g}, {}",
-                  search.stuck() ? "no step reduces the residual after" : "stopped after", result_.iterations,
-                  search.error(), options_.tolerance, to_string(result_.worst.front()));
+      fmt::format("{} {} iterations: largest scaled residual {:.3g} > {:.3g}, {}", end, result_.iterations,
+                  missing.lpNorm<Eigen::Infinity>(), options_.tolerance, to_string(result_.worst.front()));
   if (result_.least_squares_optimum)
     result_.reason +=
         "; the constraints contradict each other, this is the nearest shape in the sense of least squares";
-  if (const std::string path = short_path(); !path.empty()) result_.reason += "; " + path;
+  result_.short_path = find_short_path(problem_);
+  if (const auto& path = result_.short_path)
+    result_.reason += "; " + to_string(*path, std::to_string(path->from), std::to_string(path->to));
 }
 
-void FormSearch::list_worst(const ConstraintRows& rows, const VecX& missing) {
-  int row = 0;
-  for (const Constraint& constraint : problem_.constraints) {
-    for (const int member : constraint.members) {
-      const double scale = rows.scale[row], found = rows.value[row] * scale;
-      if (std::abs(missing[row]) > options_.tolerance)
-        result_.worst.push_back(
-            {constraint.name, constraint.kind, member, found + missing[row] * scale, found, -missing[row]});
-      ++row;
+bool FormSearch::pushes(const ConstrainedResult& found) const {
+  const double rounding = push_limit * found.tension.cwiseAbs().maxCoeff();
+  for (std::size_t b = 0; b < problem_.pulls.size(); ++b)
+    if (problem_.pulls[b] && found.tension[static_cast<Eigen::Index>(b)] < -rounding) return true;
+  return false;
+}
+
+std::optional<CompromiseResult> FormSearch::best_compromise(const NetState* end) const {
+  CompromiseSettings settings;
+  settings.tolerance = options_.tolerance;
+  settings.force = force_scale_;
+  settings.held = problem_.held;
+  settings.lower = problem_.lower;
+  settings.upper = problem_.upper;
+  if (!problem_.pulls.empty()) {
+    settings.lower = VecX::Constant(start_.size(), std::nan(""));
+    for (Eigen::Index b = 0; b < start_.size(); ++b) {
+      const double own = problem_.lower.size() > 0 ? problem_.lower[b] : std::nan("");
+      const bool pulls = problem_.pulls[static_cast<std::size_t>(b)];
+      settings.lower[b] = pulls && !(own > 0) ? 0 : own;
     }
   }
-  std::stable_sort(result_.worst.begin(), result_.worst.end(),
-                   [](const auto& a, const auto& b) { return std::abs(a.relative) > std::abs(b.relative); });
-  if (static_cast<int>(result_.worst.size()) > options_.n_worst) result_.worst.resize(options_.n_worst);
+  std::vector<NetState> starts{system_.state(given_density(problem_, start_), given_nodes(problem_.net))};
+  if (end != nullptr) starts.insert(starts.begin(), *end);
+  std::optional<CompromiseResult> best;
+  for (const NetState& start : starts) {
+    try {
+      CompromiseResult found = find_compromise(
+          system_, [&](const NetState& state) { return rows(state); }, start, settings);
+      if (!found.in_balance) continue;
+      if (!best || found.squares < (1 - 1e-9) * best->squares) best = std::move(found);
+    } catch (const ModelError&) {
+      // This start leads off the surface.
+    }
+  }
+  return best;
+}
+
+bool FormSearch::compromise(const NetState* end) {
+  if (problem_.constraints.empty() || start_.size() > most_compromising ||
+      options_.jacobian == SurfaceJacobian::as_published)
+    return false;
+  if (force_scale_ == 0)
+    force_scale_ = force_scale(problem_, system_.state(start_, given_nodes(problem_.net)));
+  const auto best = best_compromise(end);
+  if (!best) return false;
+  take_shape(best->state);
+  result_.iterations += best->iterations;
+  result_.converged = best->met;
+  result_.in_balance = true;
+  result_.least_squares_optimum = best->optimum;
+  const VecX missing = best->rows.missing();
+  result_.residual.push_back(missing.lpNorm<Eigen::Infinity>());
+  result_.coordinate_norm.push_back(coordinate_norm(system_, best->state));
+  result_.method = "compromise";
+  result_.n_rows = static_cast<int>(missing.size());
+  result_.worst.clear();
+  result_.misses.clear();
+  result_.short_path.reset();
+  result_.weighted_squares = 0;
+  if (best->met)
+    result_.reason = fmt::format("largest scaled residual {:.3g} <= {:.3g}",
+                                 missing.lpNorm<Eigen::Infinity>(), options_.tolerance);
+  else
+    blame(best->rows, "no step reduces the weighted squares after");
+  return true;
 }
 
 void FormSearch::find_rank(ConstraintSearch& search) {
@@ -349,62 +476,20 @@ void FormSearch::find_rank(ConstraintSearch& search) {
   result_.condition_is_estimate = true;
 }
 
-/// The shortest path over branches of prescribed length that cannot reach from one fixed node to another, if
-/// there is one: a sentence.
-std::string FormSearch::short_path() const {
-  const Net& net = problem_.net;
-  std::vector<std::vector<std::pair<int, double>>> next(net.nodes.size());
-  for (const Constraint& constraint : problem_.constraints) {
-    if (constraint.kind != ConstraintKind::length) continue;
-    for (std::size_t k = 0; k < constraint.members.size(); ++k) {
-      const auto [i, j] = net.branches[constraint.members[k]];
-      const double length = constraint.value[constraint.value.size() == 1 ? 0 : k];
-      next[i].emplace_back(j, length);
-      next[j].emplace_back(i, length);
-    }
-  }
-  int sources = 0;
-  for (int from = 0; from < static_cast<int>(net.nodes.size()) && sources < 200; ++from) {
-    if (!net.fixed[from] || next[from].empty()) continue;
-    ++sources;
-    std::vector<double> reach(net.nodes.size(), std::numeric_limits<double>::infinity());
-    std::multimap<double, int> front{{0.0, from}};
-    reach[from] = 0;
-    while (!front.empty()) {
-      const auto [length, node] = *front.begin();
-      front.erase(front.begin());
-      if (length > reach[node]) continue;
-      const double distance = (net.nodes[node] - net.nodes[from]).norm();
-      if (net.fixed[node] && length < distance * (1 - 1e-9))
-        return fmt::format(
-            "the lengths asked for between the fixed nodes {} and {} add up to {:.6g} m, but these are "
-            "{:.6g} m apart",
-            from, node, length, distance);
-      for (const auto& [other, step] : next[node]) {
-        if (length + step >= reach[other]) continue;
-        reach[other] = length + step;
-        front.emplace(reach[other], other);
-      }
-    }
-  }
-  return {};
-}
-
 ConstrainedResult FormSearch::run() {
-  if (!try_positions()) search();
+  try {
+    if (!try_positions())
+      search();
+    else if (!result_.converged && result_.iterations < options_.max_iterations)
+      compromise(nullptr);
+  } catch (const CancelledDensities&) {
+    // The start leaves a direction open. The shape as given may not.
+    if (!compromise(nullptr)) throw;
+  }
   return std::move(result_);
 }
 
 }  // namespace
-
-std::string to_string(const Deviation& deviation) {
-  const bool length =
-      deviation.kind == ConstraintKind::length || deviation.kind == ConstraintKind::unstressed_length;
-  const char* unit = length ? "m" : "N";
-  return fmt::format("{} of {}, {} {}: {:.6g} {} wanted, {:.6g} {} found", word(deviation.kind),
-                     deviation.constraint, is_reaction(deviation.kind) ? "node" : "branch", deviation.member,
-                     deviation.wanted, unit, deviation.found, unit);
-}
 
 ConstrainedResult find_form(const ConstrainedNet& problem, const ConstrainedOptions& options) {
   check_problem(problem, options);

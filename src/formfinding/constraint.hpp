@@ -15,10 +15,19 @@ namespace tautline::formfinding {
 struct ConstraintRows {
   using Entries = std::vector<Eigen::Triplet<double>>;  ///< (row, branch, derivative)
   std::vector<double> value, target;
-  std::vector<double> scale;  ///< [unit of the value]
+  std::vector<double> scale;   ///< [unit of the value]
+  std::vector<double> weight;  ///< of the square of each row where they are weighed against each other
   Entries by_force_density;
   std::array<Entries, 3> by_vector;         ///< one for each direction
   std::vector<std::array<int, 2>> centred;  ///< (first row, count): only differences from the mean count
+  /// Second derivatives of a row by the force density q and the length L of one branch, and the first by L.
+  struct Curvature {
+    int row, branch;
+    double by_L, by_qL, by_qq, by_LL;
+  };
+  std::vector<Curvature> curvature;
+  /// Rows with the product of q and one component of the branch vector: (row, branch, factor) by direction.
+  std::array<Entries, 3> by_product;
 
   /// Right-hand side r = target - value of eq. (2.16).
   VecX missing() const;

@@ -149,8 +149,8 @@ void NetSystem::factorise_guided(const VecX& force_density) {
 }
 
 void NetSystem::report_cancelled(int free) const {
-  throw NodeError("the force densities around ", {free_nodes_[free]},
-                  " cancel out: its place is not determined");
+  throw CancelledDensities("the force densities around ", {free_nodes_[free]},
+                           " cancel out: its place is not determined");
 }
 
 int NetSystem::negative_pivots() const {
@@ -268,6 +268,18 @@ Coordinates NetSystem::respond_transposed(const NetState& state, const Coordinat
   by_force = factor_.solve(by_force);
   if (!height_nodes_.empty()) by_force.col(2)(height_nodes_) = lift;
   return by_force;
+}
+
+NetSystem::Directions NetSystem::directions(const NetState& state, int free) const {
+  Directions ways;
+  if (guided()) {
+    ways.count = first_unknown_[free + 1] - first_unknown_[free];
+    ways.motion = ways.force = basis_[free];
+  }
+  if (!on_surface(free)) return ways;
+  ways.count = 2;
+  ways.motion.row(2) << state.slope_x[free], state.slope_y[free], 0;
+  return ways;
 }
 
 Coordinates NetSystem::unbalanced(Coordinates force) const {

@@ -35,6 +35,14 @@ class NetSystem {
   const Net& net() const noexcept { return net_; }
   const Surface* surface() const noexcept { return surface_; }
   const std::vector<int>& free_nodes() const noexcept { return free_nodes_; }
+  int free_index(int node) const noexcept { return free_index_[node]; }
+
+  /// Ways in which a free node can move, and directions in which it must balance: the columns.
+  struct Directions {
+    int count = 3;
+    Mat3 motion = Mat3::Identity(), force = Mat3::Identity();
+  };
+  Directions directions(const NetState& state, int free) const;
 
   /// Factorises D for these force densities. @throws ModelError if D is singular, naming a node.
   void factorise(const VecX& force_density);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -11,8 +10,9 @@
 
 #include "steps/balanced_form.hpp"
 #include "steps/context.hpp"
+#include "steps/form_frame.hpp"
 #include "steps/form_methods.hpp"
-#include "steps/frame_balance.hpp"
+#include "steps/form_verdict.hpp"
 #include "steps/length_errors.hpp"
 #include "steps/rear_form.hpp"
 #include "steps/reflector_form.hpp"
@@ -37,37 +37,6 @@ void take_cables(model::Model& structure, const FormNet& net, const Form& found)
 void take_film(model::Model& structure, const FormNet& net, const Form& found) {
   for (std::size_t f = 0; f < found.film_stress.size(); ++f)
     structure.membranes[net.membranes[f]].prestress = found.film_stress[f];
-}
-
-/// What of the largest tension found is no more than its rounding [N].
-double rounding_of(const Form& found) {
-  constexpr double rounding = 1e-9;
-  return found.tension.size() > 0 ? rounding * found.tension.cwiseAbs().maxCoeff() : 0;
-}
-
-/// A net in which a cable would have to push is none of this structure: the cable would go slack and the net
-/// move.
-void refuse_pushed_cables(const model::Model& structure, const FormNet& net, Form& found) {
-  constexpr std::size_t most_named = 5;
-  if (!found.converged) return;
-  std::vector<int> pushed;
-  for (int b = 0; b < static_cast<int>(found.tension.size()); ++b) {
-    const auto& cable = structure.cables[static_cast<std::size_t>(net.cables[static_cast<std::size_t>(b)])];
-    const bool bar = structure.groups[static_cast<std::size_t>(cable.group)].kind == model::ElementKind::bar;
-    if (!bar && found.tension[b] < -100 * rounding_of(found)) pushed.push_back(b);
-  }
-  if (pushed.empty()) return;
-  std::sort(pushed.begin(), pushed.end(), [&](int a, int b) { return found.tension[a] < found.tension[b]; });
-  std::string names;
-  for (std::size_t i = 0; i < std::min(most_named, pushed.size()); ++i)
-    names += fmt::format("{}{} with {:.4g} N", i > 0 ? "; " : "", net.describe(structure, pushed[i]),
-                         -found.tension[pushed[i]]);
-  if (pushed.size() > most_named) names += "; ...";
-  found.converged = false;
-  found.reason = fmt::format(
-      "{} of the {} cables would have to push, which no cable can: {}. Ask for other tensions, give "
-      "`bounds`, or make them bars",
-      pushed.size(), found.tension.size(), names);
 }
 
 /// Cables of `ties` pull along z at the nodes of the net that lie on a surface.
@@ -214,43 +183,17 @@ void show(Context& context) {
   draw_tensions(context, model::evaluate_response(system.model(), system.state()));
 }
 
-constexpr int most_rounds = 30;          // of net and frame in turn
-constexpr double settled_frame = 1e-13;  // change of the frame's displacements over its size
-
-/// Net and frame in turn until neither moves the other: the frame yields, the net is found anew between the
-/// places where it went.
-Form find_with_frame(Context& context, const FormFindingOptions& options, FormNet& net, Json& entry) {
-  const bool precambered = options.frame == FrameKind::precambered;
-  Frame frame(context, net, settled_groups(context, options, net), precambered);
-  double size = 0;
-  for (const Vec3& node : context.structure.nodes)
-    size = std::max(size, (node - context.structure.nodes.front()).norm());
-  Json changes = Json::array();
-  double last = std::numeric_limits<double>::infinity();
-  Form found;
-  for (int round = 0; round < most_rounds; ++round) {
-    context.structure.nodes = frame.positions();
-    for (std::size_t i = 0; i < net.nodes.size(); ++i)
-      if (net.net.fixed[i]) net.net.nodes[i] = context.structure.nodes[net.nodes[i]];
-    if (round == 0 || !precambered) found = find_form(context, options, net);
-    if (!found.converged) return found;
-    hand_over(context, options, net, found);
-    const double change = frame.rest(context, context.structure);
-    changes.push_back(change);
-    context.progress.say(fmt::format("{} | frame yields, change {:.2e} m", context.step_name, change));
-    if (change <= settled_frame * size || (change <= 1e3 * settled_frame * size && change > last / 2)) break;
-    last = change;
-  }
-  if (changes.back().get<double>() > 1e3 * settled_frame * size) {
-    found.converged = false;
-    found.reason = fmt::format("net and frame still move each other by {:.3g} m > {:.3g} m after {} rounds",
-                               changes.back().get<double>(), 1e3 * settled_frame * size, most_rounds);
-  }
-  frame.unload(context.structure);
-  entry["frame"] = {{"rounds", changes.size()},
-                    {"last_change", changes.back()},
-                    {"largest_displacement", frame.largest_displacement()}};
-  return found;
+/// What the shape that the structure now has is like, in results, tables and pictures.
+void describe(Context& context, const FormFindingOptions& options, const FormNet& net, const Form& found,
+              Json& entry) {
+  entry["groups"] = found_groups_json(context.structure);
+  if (!context.surface)
+    if (const Json supports = support_forces(context.structure, net, found); !supports.empty())
+      entry["reactions"] = supports;
+  if (!found.film_stress.empty()) judge_film(context, net, found, entry);
+  show(context);
+  if (found.converged && options.length_errors)
+    entry["length_errors"] = length_errors_json(context, *options.length_errors, net);
 }
 
 }  // namespace
@@ -262,9 +205,12 @@ Json run_step(Context& context, const FormFindingOptions& options) {
   std::optional<CoupledForm> coupled;
   if (context.surface && rear_form(context, options) != RearForm::mirrored)
     coupled = find_coupled(context, options, net);
-  auto found = coupled                             ? coupled->front
-               : options.frame != FrameKind::rigid ? find_with_frame(context, options, net, frame)
-                                                   : find_form(context, options, net);
+  const HandOver hand_over_net = [&](const Form& found) { hand_over(context, options, net, found); };
+  auto found = coupled ? coupled->front
+               : options.frame != FrameKind::rigid
+                   ? find_with_frame(context, options, settled_groups(context, options, net), net,
+                                     hand_over_net, frame)
+                   : find_form(context, options, net);
   refuse_pushed_cables(context.structure, net, found);
   Json entry{{"status", found.converged ? "done" : "not_converged"}, {"reason", found.reason}};
   entry.update(found.details);
@@ -273,18 +219,15 @@ Json run_step(Context& context, const FormFindingOptions& options) {
   if (!found.warnings.empty()) entry["warnings"] = found.warnings;
   for (const auto& warning : found.warnings) context.warn("form_finding", warning);
   draw_convergence(context, found);
-  if (!found.converged && !found.details.contains("worst")) return entry;
-  if (!found.converged && context.surface) return entry;
-  if (options.frame == FrameKind::rigid)
-    hand_over(context, options, net, found, coupled ? &*coupled : nullptr);
-  entry["groups"] = found_groups_json(context.structure);
-  if (!context.surface)
-    if (const Json supports = support_forces(context.structure, net, found); !supports.empty())
-      entry["reactions"] = supports;
-  if (!found.film_stress.empty()) judge_film(context, net, found, entry);
-  if (found.converged) show(context);
-  if (found.converged && options.length_errors)
-    entry["length_errors"] = length_errors_json(context, *options.length_errors, net);
+  if (!found.converged && !found.compromise) return entry;
+  try {
+    if (options.frame == FrameKind::rigid)
+      hand_over(context, options, net, found, coupled ? &*coupled : nullptr);
+    describe(context, options, net, found, entry);
+  } catch (const ModelError& error) {
+    if (found.converged) throw;
+    entry["reason"] = fmt::format("{}; its results are not complete: {}", found.reason, error.what());
+  }
   return entry;
 }
 

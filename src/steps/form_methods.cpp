@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 #include <tautline/formfinding/minimal_film.hpp>
 #include <tautline/formfinding/node_error.hpp>
 
+#include "steps/form_verdict.hpp"
 #include "steps/self_stress_form.hpp"
 
 namespace tautline::steps {
@@ -21,12 +23,13 @@ namespace {
 using formfinding::ConstrainedNet;
 using formfinding::ConstraintKind;
 
-/// Tension asked of each branch by its group [N]; NaN: none.
+/// Tension asked of each branch by its group [N], of bars also a compression < 0; NaN: none.
 VecX target_tensions(const model::Model& structure, const FormNet& form) {
   VecX target(form.cables.size());
   for (std::size_t b = 0; b < form.cables.size(); ++b) {
     const double tension = structure.groups[structure.cables[form.cables[b]].group].target_tension;
-    target[static_cast<int>(b)] = tension > 0 ? tension : std::nan("");
+    const bool asked = tension > 0 || (tension < 0 && form.is_bar(structure, static_cast<int>(b)));
+    target[static_cast<int>(b)] = asked ? tension : std::nan("");
   }
   if (!(target.array() > 0).any())
     throw ModelError(
@@ -51,6 +54,20 @@ VecX drawn_force_density(const model::Model& structure, const FormNet& form, dou
 /// The net's own force densities, or else as drawn.
 VecX given_force_density(const model::Model& structure, const FormNet& form, double otherwise) {
   return form.force_density.size() > 0 ? form.force_density : drawn_force_density(structure, form, otherwise);
+}
+
+VecX unstressed_lengths(const model::Model& structure, const FormNet& form) {
+  VecX lengths(form.cables.size());
+  for (std::size_t b = 0; b < form.cables.size(); ++b)
+    lengths[static_cast<int>(b)] = structure.unstressed_length(structure.cables[form.cables[b]]);
+  return lengths;
+}
+
+std::vector<bool> bars(const model::Model& structure, const FormNet& form) {
+  std::vector<bool> bar;
+  for (std::size_t b = 0; b < form.cables.size(); ++b)
+    bar.push_back(form.is_bar(structure, static_cast<int>(b)));
+  return bar;
 }
 
 VecX axial_stiffness(const model::Model& structure, const FormNet& form) {
@@ -170,25 +187,51 @@ std::string names_text(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-bool is_reaction(ConstraintKind kind) {
-  return kind >= ConstraintKind::reaction_x;
-}
-
 /// In a net found for tensions, groups that state a force density keep it.
 bool keeps_force_density(const Context& context, const FormFindingOptions& options,
                          const std::string& group) {
   return options.method == FormMethod::tension && context.deck.groups.at(group).force_density.has_value();
 }
 
+/// @throws ModelError if a cable shall push
+void check_pushed(const model::Model& structure, const FormNet& form,
+                  const formfinding::Constraint& constraint) {
+  if (constraint.kind != ConstraintKind::tension && constraint.kind != ConstraintKind::force_density) return;
+  for (std::size_t k = 0; k < constraint.members.size(); ++k)
+    if (const double wanted = constraint.wanted(k, 0);
+        wanted < 0 && !form.is_bar(structure, constraint.members[k]))
+      throw ModelError(
+          fmt::format("form-finding: {:.6g} asked of {} would put tension-only cables in compression; make "
+                      "them bars",
+                      wanted, constraint.name));
+}
+
+/// Soft bounds of force densities are demands.
+void add_soft_bounds(const model::Model& structure, const FormFindingOptions& options, const FormNet& form,
+                     std::vector<formfinding::Constraint>& list) {
+  for (const auto& bounds : options.bounds)
+    if (bounds.weight)
+      list.push_back({ConstraintKind::force_density,
+                      names_text(bounds.on),
+                      form.branches_of(structure, bounds.on),
+                      {},
+                      bounds.min,
+                      bounds.max,
+                      *bounds.weight});
+}
+
 /// The demands of the deck, or of the groups' tensions where cloth stands beside method tension.
 std::vector<formfinding::Constraint> demands(const model::Model& structure, const FormFindingOptions& options,
                                              const FormNet& form) {
   std::vector<formfinding::Constraint> list;
-  for (const auto& wish : options.constraints)
-    list.push_back(
-        {wish.kind, names_text(wish.on),
-         is_reaction(wish.kind) ? form.nodes_of(structure, wish.on) : form.branches_of(structure, wish.on),
-         wish.value});
+  for (const auto& wish : options.constraints) {
+    list.push_back({wish.kind, names_text(wish.on),
+                    wish.kind >= ConstraintKind::reaction_x ? form.nodes_of(structure, wish.on)
+                                                            : form.branches_of(structure, wish.on),
+                    wish.value, wish.min, wish.max, wish.weight});
+    check_pushed(structure, form, list.back());
+  }
+  add_soft_bounds(structure, options, form, list);
   if (options.method != FormMethod::tension) return list;
   const VecX target = target_tensions(structure, form);
   for (const auto& group : form.groups) {
@@ -203,7 +246,8 @@ std::vector<formfinding::Constraint> demands(const model::Model& structure, cons
 void set_bounds(const model::Model& structure, const FormFindingOptions& options, const FormNet& form,
                 ConstrainedNet& problem) {
   const auto n = static_cast<Eigen::Index>(form.cables.size());
-  for (const auto& bounds : options.bounds)
+  for (const auto& bounds : options.bounds) {
+    if (bounds.weight) continue;
     for (const int b : form.branches_of(structure, bounds.on)) {
       if (bounds.min) {
         if (problem.lower.size() == 0) problem.lower = VecX::Constant(n, std::nan(""));
@@ -214,6 +258,7 @@ void set_bounds(const model::Model& structure, const FormFindingOptions& options
         problem.upper[b] = *bounds.max;
       }
     }
+  }
 }
 
 formfinding::ConstrainedOptions constrained_options(const FormFindingOptions& options) {
@@ -228,21 +273,6 @@ formfinding::ConstrainedOptions constrained_options(const FormFindingOptions& op
   if (options.solver == FormSolver::lsqr) solver.step_solver = lsqr;
   if (options.solver == FormSolver::position_newton) solver.step_solver = position_newton;
   return solver;
-}
-
-Json worst_json(const Context& context, const FormNet& form, const formfinding::ConstrainedResult& found) {
-  Json list = Json::array();
-  for (const auto& worst : found.worst) {
-    const bool node = is_reaction(worst.kind);
-    list.push_back(
-        {{"constraint", worst.constraint},
-         {"where", node ? fmt::format("node at ({:.4g}, {:.4g}, {:.4g})", found.nodes[worst.member].x(),
-                                      found.nodes[worst.member].y(), found.nodes[worst.member].z())
-                        : form.describe(context.structure, worst.member)},
-         {"wanted", worst.wanted},
-         {"found", worst.found}});
-  }
-  return list;
 }
 
 Form find_with_constraints(const Context& context, const FormFindingOptions& options, const FormNet& form) {
@@ -263,8 +293,12 @@ Form find_with_constraints(const Context& context, const FormFindingOptions& opt
     if (keeps_force_density(context, options, group)) held.push_back(group);
   for (const int b : form.branches_of(structure, held)) problem.held[b] = true;
   set_bounds(structure, options, form, problem);
+  problem.pulls = bars(structure, form);
+  problem.pulls.flip();
   const auto found = formfinding::find_form(problem, constrained_options(options));
   Form result = begin(found);
+  if (!found.misses.empty()) result.reason = reason_of_misses(context, form, found);
+  result.compromise = !found.converged && found.in_balance && !found.misses.empty();
   result.warnings = found.warnings;
   result.tension = found.tension;
   result.reaction = found.reaction;
@@ -284,25 +318,8 @@ Form find_with_constraints(const Context& context, const FormFindingOptions& opt
     result.details["condition_is_lower_bound"] = found.condition_is_estimate;
   }
   if (found.cloth_iterations > 0) result.details["cloth_iterations"] = found.cloth_iterations;
-  if (!found.worst.empty()) {
-    result.details["least_squares_optimum"] = found.least_squares_optimum;
-    result.details["worst"] = worst_json(context, form, found);
-  }
+  if (!found.worst.empty()) result.details.update(misses_json(context, form, found));
   return result;
-}
-
-VecX unstressed_lengths(const model::Model& structure, const FormNet& form) {
-  VecX lengths(form.cables.size());
-  for (std::size_t b = 0; b < form.cables.size(); ++b)
-    lengths[static_cast<int>(b)] = structure.unstressed_length(structure.cables[form.cables[b]]);
-  return lengths;
-}
-
-std::vector<bool> bars(const model::Model& structure, const FormNet& form) {
-  std::vector<bool> bar;
-  for (const int cable : form.cables)
-    bar.push_back(structure.groups[structure.cables[cable].group].kind == model::ElementKind::bar);
-  return bar;
 }
 
 Form find_elastic(const Context& context, const FormFindingOptions& options, const FormNet& form) {
@@ -324,6 +341,30 @@ Form find_elastic(const Context& context, const FormFindingOptions& options, con
                     {"out_of_balance", found.out_of_balance},
                     {"slack", found.n_slack}};
   return result;
+}
+
+/// Ropes keep their unstressed lengths in dynamic relaxation, not the tensions that they were given by.
+void note_changed_tensions(const model::Model& structure, const FormNet& form, const VecX& constant,
+                           Form& result) {
+  constexpr double noted = 0.05;  // of the tension given
+  for (const auto& name : form.groups) {
+    const double given =
+        structure.groups[static_cast<std::size_t>(structure.find_group(name))].target_tension;
+    if (given == 0) continue;
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const int b : form.branches_of(structure, {name}))
+      if (std::isnan(constant[b])) {
+        least = std::min(least, result.tension[b]);
+        most = std::max(most, result.tension[b]);
+      }
+    if (least > most || std::max(std::abs(least - given), std::abs(most - given)) <= noted * std::abs(given))
+      continue;
+    result.warnings.push_back(
+        fmt::format("\"{}\" was given {:.6g} N and carries {:.6g} to {:.6g} N in the shape found: elastic "
+                    "cables keep the unstressed length of the drawing; `constant_tension: [{}]` keeps the "
+                    "tension",
+                    name, given, least, most, name));
+  }
 }
 
 Form relax(const Context& context, const FormFindingOptions& options, const FormNet& form) {
@@ -352,6 +393,7 @@ Form relax(const Context& context, const FormFindingOptions& options, const Form
   result.unstressed_length = lengths;
   result.film_stress = found.stress;
   result.reaction = reactions(form, found.nodes, found.tension, result.film_stress);
+  if (found.converged) note_changed_tensions(structure, form, net.tension, result);
   result.details = {{"iterations", found.iterations}, {"out_of_balance", found.out_of_balance}};
   const bool viscous = solver.damping == formfinding::Damping::viscous;
   if (viscous) result.details["pilot_iterations"] = found.pilot_iterations;
@@ -415,8 +457,16 @@ Form find_by_method(const Context& context, const FormFindingOptions& options, c
   const bool mixed = std::any_of(form.groups.begin(), form.groups.end(), [&](const std::string& group) {
     return keeps_force_density(context, options, group);
   });
-  return form.film.empty() && !mixed ? find_by_tensions(context, options, form)
-                                     : find_with_constraints(context, options, form);
+  const bool pressed = (target_tensions(context.structure, form).array() < 0).any();
+  if (!form.film.empty() || mixed || pressed) return find_with_constraints(context, options, form);
+  Form found = find_by_tensions(context, options, form);
+  // Tensions that no net can have in full: the one nearest to them.
+  const int most = options.max_iterations.value_or(formfinding::ForceDensityOptions{}.max_iterations);
+  if (found.converged || options.solver == FormSolver::position_newton ||
+      found.details["iterations"].get<int>() >= most)
+    return found;
+  Form nearest = find_with_constraints(context, options, form);
+  return nearest.converged || nearest.compromise ? nearest : found;
 }
 
 }  // namespace
@@ -427,7 +477,9 @@ Points net_reactions(const FormNet& form, const Points& nodes, const VecX& tensi
 
 Form find_form(const Context& context, const FormFindingOptions& options, const FormNet& form) {
   try {
-    return find_by_method(context, options, form);
+    Form found = find_by_method(context, options, form);
+    refuse_collapsed(context.structure, form, found);
+    return found;
   } catch (const formfinding::NodeError& error) {
     throw ModelError("form-finding: " + error.with([&](int node) { return form.node_name(context, node); }));
   }

@@ -8,6 +8,8 @@ namespace tautline::steps {
 
 struct Form {
   bool converged = false;
+  bool compromise =
+      false;  ///< not converged, but a net in equilibrium that misses what is asked as little as can be
   std::string reason;
   std::vector<std::string> warnings;
   Points nodes;            ///< of the net [m]; empty if there is no shape to show

@@ -200,6 +200,11 @@ double FormNet::stiffness(const model::Model& structure, std::size_t branch) con
   return structure.axial_stiffness(structure.cables[cables[branch]]);
 }
 
+bool FormNet::is_bar(const model::Model& structure, int branch) const {
+  const auto& cable = structure.cables[cables[static_cast<std::size_t>(branch)]];
+  return structure.groups[cable.group].kind == model::ElementKind::bar;
+}
+
 std::vector<int> FormNet::branches_of(const model::Model& structure,
                                       const std::vector<std::string>& names) const {
   std::vector<int> branches;

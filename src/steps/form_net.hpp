@@ -27,6 +27,7 @@ struct FormNet {
   VecX force_density;  ///< of each branch, in place of the drawn one [N/m]; empty: as drawn
 
   double stiffness(const model::Model& structure, std::size_t branch) const;
+  bool is_bar(const model::Model& structure, int branch) const;
   /// Branches of the named groups, in the order of the names. @throws ModelError for a group outside the net
   std::vector<int> branches_of(const model::Model& structure, const std::vector<std::string>& names) const;
   /// Net nodes of the named groups and selections. @throws ModelError for a node outside the net

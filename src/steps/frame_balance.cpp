@@ -155,16 +155,41 @@ double Frame::rest(const Context& context, const model::Model& structure) {
   return precambered_ ? find_precamber(structure) : yield(context, structure);
 }
 
+std::string Frame::moved_most(const assembly::System& system) const {
+  const auto& state = system.state();
+  std::size_t most = 0;
+  double largest = 0;
+  for (std::size_t i = 0; i < reference_.size(); ++i)
+    if (const double way = (state.displacement[i] - motion_.displacement[i]).norm(); way > largest) {
+      largest = way;
+      most = i;
+    }
+  if (!(largest > 0)) return {};
+  std::string group;
+  model::for_each_kind(system.model(), [&](const auto& elements) {
+    for (const auto& element : elements)
+      for (const int node : element.nodes)
+        if (node == static_cast<int>(most))
+          group = system.model().groups[static_cast<std::size_t>(element.group)].name;
+  });
+  const Vec3 from = reference_[most] + motion_.displacement[most],
+             to = reference_[most] + state.displacement[most];
+  return fmt::format(
+      ", where a node of \"{}\" has moved most, from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g})",
+      group, from.x(), from.y(), from.z(), to.x(), to.y(), to.z());
+}
+
 double Frame::yield(const Context& context, const model::Model& structure) {
   assembly::System system(loaded_frame(structure));
   analysis::Workspace workspace{system.new_matrix(), {}};
   system.begin_stage({system.model().supports, system.model().loads});
   const auto path = analysis::follow_path(system, workspace, context.deck.solver);
   if (!path.reached)
-    throw ModelError(
-        fmt::format("form-finding: the frame made as drawn finds no equilibrium under the net: {}. "
-                    "Make it stiffer, or let it be as drawn under the net (frame: precambered)",
-                    path.reason));
+    throw ModelError(fmt::format(
+        "form-finding: the frame made as drawn finds no equilibrium under the net: it bears {:.3g} "
+        "of the net's pull{}: {}. Make it stiffer, or let it be as drawn under the net (frame: "
+        "precambered)",
+        path.lambda(), moved_most(system), path.reason));
   const auto& state = system.state();
   double change = 0;
   for (std::size_t i = 0; i < reference_.size(); ++i)

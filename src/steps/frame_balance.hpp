@@ -38,6 +38,8 @@ class Frame {
   }
   model::Model loaded_frame(const model::Model& structure) const;
   Points pull(const model::Model& structure) const;
+  /// Which node of the frame has moved most since the last rest, from where to where; or nothing.
+  std::string moved_most(const assembly::System& system) const;
   /// The frame yields under dead forces.
   double yield(const Context& context, const model::Model& structure);
   /// @brief The shape without stress from which the frame comes to the drawn one.

@@ -1,8 +1,12 @@
 #include "steps/reflector_form.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
+
+#include "steps/form_verdict.hpp"
 
 namespace tautline::steps {
 
@@ -40,9 +44,11 @@ void place_rear_nodes(Context& context, const FormNet& net, const Form& found) {
     const auto [front, rear] = tie.nodes;
     const Vec3& at = structure.nodes[front];
     structure.nodes[rear] = Vec3(at.x(), at.y(), -at.z() - context.deck.dish()->gap);
-    const double pull = -found.reaction[net.local[front]].z() / sharing[front];
+    const double found_pull = -found.reaction[net.local[front]].z() / sharing[front];
+    const double pull =
+        std::abs(found_pull) <= rounding_of(found) ? 0 : found_pull;  // on a plane there is none
     tie.initial_strain = pull / stiffness(structure, tie);
-    if (pull <= 0)
+    if (pull < 0)
       throw ModelError(
           fmt::format("form-finding: the tie at ({:.3f}, {:.3f}) would be pressed with {:.3g} N; a tie only "
                       "pulls. The net "

@@ -324,7 +324,7 @@ TEST(ConstrainedForm, InputThatMakesNoSenseIsNamed) {
     problem.constraints = std::move(constraints);
     return error_of([&] { find_form(problem); });
   };
-  EXPECT_EQ(with({{Kind::tension, "ridge", {0}, {-3}}}), "tension of ridge must be positive, not -3");
+  EXPECT_EQ(with({{Kind::length, "ridge", {0}, {-3}}}), "length of ridge must be positive, not -3");
   EXPECT_EQ(with({{Kind::tension, "ridge", {}, {3}}}), "tension of ridge names no cable");
   EXPECT_EQ(with({{Kind::tension, "ridge", {4}, {3}}}), "tension of ridge names branch 4, but the net has 2");
   EXPECT_EQ(with({{Kind::length, "ridge", {0, 1}, {3, 3, 3}}}),

@@ -2,7 +2,10 @@
 /// @file
 /// What may be asked of a net in stage 1 (Belov 2021, eqs 2.62-2.72), and the answer.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <tautline/formfinding/constrained_options.hpp>
 #include <tautline/formfinding/constraint_options.hpp>
@@ -14,9 +17,25 @@ namespace tautline::formfinding {
 /// The same demand on several branches or nodes.
 struct Constraint {
   ConstraintKind kind = ConstraintKind::tension;
-  std::string name;           ///< as the user knows it: of a group of cables, of a set of supports
-  std::vector<int> members;   ///< branches; for reactions nodes
-  std::vector<double> value;  ///< one for all or one for each; none for equal_tension
+  std::string name;          ///< as the user knows it: of a group of cables, of a set of supports
+  std::vector<int> members;  ///< branches; for reactions nodes
+  std::vector<double>
+      value;  ///< one for all or one for each; none for equal_tension, nor beside least or most
+  std::optional<double> least = {}, most = {};  ///< soft bounds in place of a value: between them all is well
+  double weight = 1;                            ///< of the squares of its relative deviations
+
+  bool is_range() const { return least || most; }
+  /// What is wanted of member k where `found` is there.
+  double wanted(std::size_t k, double found) const {
+    if (!is_range()) return value[value.size() == 1 ? 0 : k];
+    const double above = least ? std::max(found, *least) : found;
+    return most ? std::min(above, *most) : above;
+  }
+  /// Size of what is wanted of member k, by which its deviation is divided; zero if it has none.
+  double size(std::size_t k) const {
+    if (!is_range()) return value.empty() ? 0 : std::abs(value[value.size() == 1 ? 0 : k]);
+    return std::max(std::abs(least.value_or(0)), std::abs(most.value_or(0)));
+  }
 };
 
 /// A net and what is asked of it. Vectors with one entry for each branch may be empty.
@@ -30,6 +49,8 @@ struct ConstrainedNet {
   VecX axial_stiffness;    ///< EA [N], for unstressed lengths
   std::vector<std::array<int, 3>> triangles = {};  ///< of cloth on the net, node indices
   VecX surface_stress = {};                        ///< of every triangle, the same in all directions [N/m]
+  std::vector<bool> pulls =
+      {};  ///< branches that cannot push, which a compromise keeps in mind; may be empty
 };
 
 /// One row of a constraint that is not met.
@@ -41,8 +62,31 @@ struct Deviation {
   double relative = 0;  ///< (found - wanted) / scale of the row
 };
 
+/// How far the members of one constraint are from what is wanted.
+struct Miss {
+  std::string constraint;  ///< its name
+  ConstraintKind kind = ConstraintKind::tension;
+  int members = 0, missed = 0;
+  double rms = 0;   ///< of the relative deviations
+  Deviation worst;  ///< its largest one
+};
+
+/// "unstressed length"
+const char* to_string(ConstraintKind kind);
+/// "N", "m" or "N/m"
+const char* unit(ConstraintKind kind);
+
 /// "length of ridge, branch 12: 1.8 m wanted, 2 m found"
 std::string to_string(const Deviation& deviation);
+
+/// Branches of prescribed length that cannot reach from one fixed node to another.
+struct ShortPath {
+  int from = -1, to = -1;           ///< nodes
+  double length = 0, distance = 0;  ///< asked for along the branches; of the nodes [m]
+};
+
+/// @param[in] from, to  what the nodes are called
+std::string to_string(const ShortPath& path, const std::string& from, const std::string& to);
 
 struct ConstrainedResult {
   bool converged = false;
@@ -66,17 +110,22 @@ struct ConstrainedResult {
   int n_rows = 0;                       ///< constraints asked for
   int rank = -1;                        ///< of G^T at the end; -1 if not computed
   double condition_number = 0;  ///< cond(G^T G) of the scaled rows, rounding-level singular values apart
-  bool condition_is_estimate = false;  ///< from below, by the Lanczos process of the last step
-  bool least_squares_optimum = false;  ///< not converged because the constraints contradict each other here
-  std::vector<Deviation> worst;        ///< rows not met, largest first, at most options.n_worst
+  bool condition_is_estimate = false;   ///< from below, by the Lanczos process of the last step
+  bool least_squares_optimum = false;   ///< not converged because the constraints contradict each other here
+  std::vector<Deviation> worst;         ///< rows not met, largest first, at most options.n_worst
+  std::vector<Miss> misses;             ///< constraints not met, largest rms first
+  std::optional<ShortPath> short_path;  ///< a reason why they cannot be met, if there is this one
+  bool in_balance = false;              ///< the shape is in equilibrium, whatever it misses
+  double weighted_squares = 0;          ///< sum of the squares of the relative deviations, weights included
 };
 
 /// @brief The shape in which the net meets its constraints: Newton's method on the force densities with steps
 /// of smallest norm (2.14-2.26, 2.53), any mixture of constraints (2.73).
 ///
 /// Rows are scaled by the value asked for, which makes them dimensionless. Constraints that cannot be met
-/// together lead to the nearest shape in the sense of least squares of the scaled rows; `reason` and `worst`
-/// tell. Does not throw because of the iteration.
+/// together lead to the shape in equilibrium with the least weighted squares of the scaled rows, searched for
+/// from where the iteration ends and from the given nodes; `reason`, `misses` and `worst` tell. Does not
+/// throw because of the iteration.
 ///
 /// Cloth pulls along the sides of its triangles with natural force densities, which follow from the shape:
 /// the net is solved again with those of its last shape until they agree.

@@ -38,4 +38,9 @@ class NodeError : public ModelError {
   std::vector<int> nodes_;
 };
 
+/// Force densities that cancel out around a node, so that equilibrium leaves its place open.
+class CancelledDensities : public NodeError {
+  using NodeError::NodeError;
+};
+
 }  // namespace tautline::formfinding

@@ -34,8 +34,10 @@ enum class FormSolver { automatic, smallest_norm, dense, lsqr, position_newton, 
 /// `constraints` of a form_finding step.
 struct FormConstraintOptions {
   formfinding::ConstraintKind kind = formfinding::ConstraintKind::tension;
-  std::vector<std::string> on;  ///< cable groups; for reactions groups of nodes
-  std::vector<double> value;    ///< one for all or one for each
+  std::vector<std::string> on;     ///< cable groups; for reactions groups of nodes
+  std::vector<double> value;       ///< one for all or one for each
+  std::optional<double> min, max;  ///< in place of a value: what is found shall lie between
+  double weight = 1;               ///< of the squares of the relative deviations
   SourceLocation where;
 };
 
@@ -43,6 +45,7 @@ struct FormConstraintOptions {
 struct FormBoundsOptions {
   std::vector<std::string> on;     ///< cable groups
   std::optional<double> min, max;  ///< of the force densities [N/m]
+  std::optional<double> weight;    ///< of a soft bound; without one the bound is kept
   SourceLocation where;
 };
 

@@ -1,0 +1,187 @@
+#include "steps/form_frame.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <tautline/core/anderson.hpp>
+#include <tautline/core/error.hpp>
+
+#include "steps/frame_balance.hpp"
+
+namespace tautline::steps {
+
+namespace {
+
+constexpr int most_rounds = 60;
+constexpr std::size_t anderson_depth = 8;
+constexpr double settled_frame = 1e-13;  // distance of the frame from where the net was found, over the size
+constexpr double enough = 1e3;           // times that, if it falls no further
+constexpr int patience = 12;             // rounds in which the frame comes no nearer
+
+/// Places of the net's fixed nodes.
+VecX edge_of(const FormNet& net, const Points& nodes) {
+  VecX edge(3 * static_cast<Eigen::Index>(net.nodes.size()));
+  Eigen::Index n = 0;
+  for (std::size_t i = 0; i < net.nodes.size(); ++i)
+    if (net.net.fixed[i]) edge.segment<3>(3 * n++) = nodes[static_cast<std::size_t>(net.nodes[i])];
+  return edge.head(3 * n);
+}
+
+void put_edge(const VecX& edge, FormNet& net, Points& nodes) {
+  Eigen::Index n = 0;
+  for (std::size_t i = 0; i < net.nodes.size(); ++i)
+    if (net.net.fixed[i])
+      net.net.nodes[i] = nodes[static_cast<std::size_t>(net.nodes[i])] = edge.segment<3>(3 * n++);
+}
+
+double largest_motion(const VecX& from, const VecX& to) {
+  double largest = 0;
+  for (Eigen::Index i = 0; i + 2 < from.size(); i += 3)
+    largest = std::max(largest, (to - from).segment<3>(i).norm());
+  return largest;
+}
+
+double size_of(const Points& nodes) {
+  double size = 0;
+  for (const Vec3& node : nodes) size = std::max(size, (node - nodes.front()).norm());
+  return size;
+}
+
+/// The rounds and what they leave.
+class Rounds {
+ public:
+  Rounds(Context& context, const FormFindingOptions& options, const std::vector<std::string>& settled,
+         FormNet& net, const HandOver& hand_over)
+      : context_(context),
+        options_(options),
+        net_(net),
+        hand_over_(hand_over),
+        frame_(context, net, settled, options.frame == FrameKind::precambered),
+        size_(size_of(context.structure.nodes)) {}
+
+  Form run(Json& entry);
+
+ private:
+  /// The net between edges there, handed over. @return false, with a reason, if there is none
+  bool find_net(const VecX& edge);
+  /// The frame under the net. @return false, with a reason, if it finds no equilibrium
+  bool rest();
+  bool settled(double distance);
+  void fail(const std::string& reason);
+
+  Context& context_;
+  const FormFindingOptions& options_;
+  FormNet& net_;
+  const HandOver& hand_over_;
+  Frame frame_;
+  double size_;
+  Form last_;         ///< handed over
+  bool any_ = false;  ///< a net has been handed over
+  std::string why_;   ///< the last round failed
+  Json changes_ = Json::array();
+  double nearest_ = std::numeric_limits<double>::infinity();
+  int since_ = 0;  ///< rounds since the nearest
+};
+
+bool Rounds::find_net(const VecX& edge) {
+  const Points before = context_.structure.nodes;
+  context_.structure.nodes = frame_.positions();
+  put_edge(edge, net_, context_.structure.nodes);
+  std::string reason;
+  try {
+    if (!any_ || options_.frame != FrameKind::precambered) {
+      Form found = find_form(context_, options_, net_);
+      if (!any_) last_ = found;
+      if (found.converged || found.compromise) {
+        hand_over_(found);
+        last_ = std::move(found);
+        any_ = true;
+        return true;
+      }
+      reason = found.reason;
+    } else {
+      hand_over_(last_);
+      return true;
+    }
+  } catch (const ModelError& error) {
+    if (!any_) throw;
+    reason = error.what();
+  }
+  context_.structure.nodes = before;
+  why_ = fmt::format("between the places where the frame goes the net is not found: {}", reason);
+  return false;
+}
+
+bool Rounds::rest() {
+  try {
+    frame_.rest(context_, context_.structure);
+    return true;
+  } catch (const ModelError& error) {
+    why_ = error.what();
+    return false;
+  }
+}
+
+bool Rounds::settled(double distance) {
+  changes_.push_back(distance);
+  context_.progress.say(fmt::format("{} | round {}, the frame is {:.2e} m from where the net was found",
+                                    context_.step_name, changes_.size(), distance));
+  since_ = distance < nearest_ / 2 ? 0 : since_ + 1;
+  nearest_ = std::min(nearest_, distance);
+  return distance <= settled_frame * size_ || (distance <= enough * settled_frame * size_ && since_ > 0);
+}
+
+void Rounds::fail(const std::string& reason) {
+  last_.reason = last_.compromise ? last_.reason + "; and " + reason : reason;
+  last_.compromise = any_;
+  last_.converged = false;
+}
+
+Form Rounds::run(Json& entry) {
+  Anderson acceleration(anderson_depth);
+  VecX edge = edge_of(net_, frame_.positions()), plain = edge;
+  bool accelerated = false, there = false;
+  while (static_cast<int>(changes_.size()) < most_rounds && since_ < patience) {
+    const bool found = find_net(edge);
+    if (found && last_.compromise) break;  // no more than this net is to be had of the drawn frame
+    if (!found || !rest()) {
+      if (!accelerated) break;
+      edge = plain;  // the acceleration led astray
+      acceleration.restart();
+      accelerated = false;
+      why_.clear();
+      continue;
+    }
+    plain = edge_of(net_, frame_.positions());
+    const double distance = largest_motion(edge, plain);
+    there = settled(distance);
+    if (there) break;
+    const VecX next = acceleration.next(edge, plain);
+    accelerated = !next.isApprox(plain, 1e-15);
+    edge = next;
+  }
+  if (!any_) return last_;
+  if (!why_.empty())
+    fail(why_);
+  else if (!there && !last_.compromise)
+    fail(fmt::format("net and frame still move each other by {:.3g} m > {:.3g} m after {} rounds",
+                     changes_.back().get<double>(), enough * settled_frame * size_, changes_.size()));
+  // Where net and frame do not meet, the tables hold the net between the places where it was found.
+  if (there) frame_.unload(context_.structure);
+  entry["frame"] = {{"rounds", changes_.size()},
+                    {"last_change", changes_.empty() ? Json() : changes_.back()},
+                    {"largest_displacement", frame_.largest_displacement()}};
+  return last_;
+}
+
+}  // namespace
+
+Form find_with_frame(Context& context, const FormFindingOptions& options,
+                     const std::vector<std::string>& settled, FormNet& net, const HandOver& hand_over,
+                     Json& entry) {
+  return Rounds(context, options, settled, net, hand_over).run(entry);
+}
+
+}  // namespace tautline::steps
