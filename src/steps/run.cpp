@@ -197,8 +197,8 @@ ExitCode run(const deck::Deck& deck, const RunSettings& settings, Progress& prog
   const auto start = Clock::now();
   const auto checkpoint = settings.from.empty() ? std::nullopt : find_checkpoint(deck, settings.from);
   Context context(deck, settings.directory, settings.pictures && deck.output.pictures, progress);
-  std::error_code error;  // e.g. that there is no such directory yet
-  const bool goes_on = checkpoint && std::filesystem::equivalent(settings.from, settings.directory, error);
+  std::error_code unknown;  // e.g. that there is no such directory yet
+  const bool goes_on = checkpoint && std::filesystem::equivalent(settings.from, settings.directory, unknown);
   la::on_root([&] { context.open_directory(goes_on); });
   watch_for_interrupt();
   context.results = start_results(deck);
