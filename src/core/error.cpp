@@ -10,6 +10,8 @@ namespace tautline {
 
 namespace {
 
+constexpr std::size_t longest = 2000;  // bytes of a sentence, which may hold names of any length
+
 std::string place(const SourceLocation& where) {
   if (where.line == 0) return where.file;
   return fmt::format("{}:{}:{}", where.file, where.line, where.column);
@@ -47,12 +49,12 @@ std::string marked_line(const Diagnostic& d) {
 }  // namespace
 
 std::string to_string(const Diagnostic& d) {
-  std::string text = fmt::format("{}: error: {}\n", place(d.where), d.message);
+  std::string text = fmt::format("{}: error: {}\n", place(d.where), shortened(d.message, longest));
   if (!d.source_line.empty()) text += marked_line(d);
   std::string detail = d.context;
   if (!d.expectation.empty()) detail += (detail.empty() ? "" : "; ") + d.expectation;
-  if (!detail.empty()) text += "  " + detail + "\n";
-  if (!d.suggestion.empty()) text += "  " + d.suggestion + "\n";
+  if (!detail.empty()) text += "  " + shortened(detail, longest) + "\n";
+  if (!d.suggestion.empty()) text += "  " + shortened(d.suggestion, longest) + "\n";
   return text;
 }
 

@@ -43,7 +43,8 @@ class Substitution {
       if (value == nullptr || !value->is_scalar()) return unknown(node, name, value != nullptr);
       result += node.text.substr(from, begin - from) + value->text;
       bytes_ += value->text.size();
-      if (bytes_ > most_bytes) return fail(node, "parameters make the deck too large", {}, {});
+      if (bytes_ > most_bytes)
+        throw DeckError({source_.diagnostic(node.place, "parameters make the deck too large")});
       from = end + 1;
       node.note += fmt::format("{}${{{}}} is {} ({})", node.note.empty() ? "" : "; ", name,
                                shortened(value->text, 60), origin(*value));

@@ -18,7 +18,7 @@ if grep -q 'kind: rod-umbrella' "$deck"; then  # an umbrella's tables are those 
 fi
 has "$WORK"/out "$WORK/results/report.html" "${files[@]/#/$WORK/results/}"
 [ ! -s "$WORK/err" ] || { fail "stderr is not empty with --quiet:"; head -n 5 "$WORK/err" >&2; }
-[ -z "$(find "$WORK/results" -name '*.tmp*' -o -name '.tautline*')" ] || fail "temporary files were left"
+[ -z "$(find "$WORK/results" -name '*.tmp*' -o -name '.tautline_probe*')" ] || fail "temporary files were left"
 if [ "$pictures" = with ]; then
   says "$WORK/results/results.json" '"file": "pictures/'
   while read -r picture; do has "$WORK/results/$picture"; done < <(sed -n 's/.*"file": "\(pictures[^"]*\)".*/\1/p' "$WORK/results/results.json")

@@ -11,7 +11,7 @@ namespace tautline::metamorphic {
 
 namespace {
 
-Vec3 across(const Vec3& way, Random& random) {
+Vec3 sideways(const Vec3& way, Random& random) {
   Vec3 normal;
   do normal = random.direction();
   while (std::abs(normal.dot(way)) > 0.8);
@@ -49,7 +49,7 @@ void act_before(Builder& b, Random& random, double critical, const Vec3& way, co
 double straight_beams(Builder& b, Random& random, double length, const Vec3& way) {
   const double h = length / random.between(60, 150), w = h * random.between(1.1, 2);
   b.section("column", {{"kind", "rectangle"}, {"material", "metal"}, {"width", w}, {"height", h}});
-  const Vec3 normal = across(way, random);
+  const Vec3 normal = sideways(way, random);
   b.group("column", {{"orientation", to_json(normal)}});
   const int n = random.whole(4, 7);
   std::vector<double> at{0};
@@ -88,7 +88,7 @@ double lattice(Builder& b, Random& random, double length, const Vec3& way) {
                        {"mass_per_length", 1.0},
                        {"thermal_expansion", 1e-5}});
   b.group("column");
-  const Vec3 u = across(way, random).cross(way).normalized(), v = way.cross(u);
+  const Vec3 u = sideways(way, random).cross(way).normalized(), v = way.cross(u);
   std::vector<std::string> names;
   for (int k = 0; k <= bays; ++k)
     for (int c = 0; c < 3; ++c) {
