@@ -1,3 +1,4 @@
+#include <formfinding/barrier.hpp>
 #include <formfinding/compromise.hpp>
 
 #include <Eigen/SparseCholesky>
@@ -21,14 +22,12 @@ constexpr double least_damping = 1e-12, most_damping = 1e10;
 constexpr double balanced = 1e-12;  // force out of balance, dimensionless
 constexpr double flat = 1e-8;       // gradient over that of all deviations together: a minimum
 constexpr double reluctance = 100;  // of the start's nodes to move, beside its force densities
-constexpr double inside = 1e-2;  // distance from their bounds at which force densities start, dimensionless
-constexpr double boundary_part = 0.01;                       // of that distance, which one step leaves
+constexpr double first_barrier = 1e-2;
 constexpr double barrier_falls = 0.3, barrier_creeps = 0.8;  // after a step, by whether damping was needed
 constexpr double free_damping = 1e-4;
 constexpr double last_barrier = 1e-9;  // over the mean square of the deviations
 constexpr double at_rest = 1e-9;       // the same, within which it counts as at its bound
 constexpr double least_barrier = 1e-20;
-constexpr double at_bound = 1e-5;  // distance from its bound of a force density that ends there
 constexpr int most_restorations = 30;
 constexpr int most_active_sets = 10;
 constexpr int most_refinements = 5;
@@ -95,107 +94,6 @@ std::pair<VecX, VecX> Saddle::solve(const VecX& upper, const VecX& lower) const 
     error = now;
   }
   return {x.head(n_), x.tail(lower.size())};
-}
-
-/// Logarithmic barrier that keeps force densities inside their bounds, with its multipliers (primal-dual).
-class Barrier {
- public:
-  /// @param[in] lower, upper  dimensionless bounds; NaN or infinite: none
-  Barrier(VecX lower, VecX upper) : lower_(std::move(lower)), upper_(std::move(upper)) {}
-
-  bool active() const noexcept { return weight_ > 0; }
-  double weight() const noexcept { return weight_; }
-  bool empty() const { return lower_.array().isNaN().all() && upper_.array().isNaN().all(); }
-  /// Moves q inside its bounds and sets the multipliers there.
-  void begin(double weight, VecX& q);
-  void lower_to(double weight) { weight_ = weight; }
-  void end() { weight_ = 0; }
-  double value(const VecX& q) const;
-  VecX gradient(const VecX& q) const;
-  /// Diagonal of the second derivative.
-  VecX curvature(const VecX& q) const;
-  /// The multipliers after a step.
-  void follow(const VecX& q, const VecX& step);
-  /// A new q no nearer to a bound than a part of the old one.
-  VecX keep_inside(const VecX& q, VecX next) const;
-  /// q at its bounds where the barrier holds it there.
-  VecX settle(VecX q) const;
-
- private:
-  /// Calls f(b, distance from a bound, sign of q in it, multiplier) for every bound.
-  template <class Function>
-  void for_each(const VecX& q, const Function& f) const {
-    for (Eigen::Index b = 0; b < q.size(); ++b) {
-      if (!std::isnan(lower_[b])) f(b, q[b] - lower_[b], 1.0, lower_multiplier_[b]);
-      if (!std::isnan(upper_[b])) f(b, upper_[b] - q[b], -1.0, upper_multiplier_[b]);
-    }
-  }
-
-  VecX lower_, upper_;
-  mutable VecX lower_multiplier_, upper_multiplier_;
-  double weight_ = 0;
-};
-
-void Barrier::begin(double weight, VecX& q) {
-  weight_ = weight;
-  lower_multiplier_ = upper_multiplier_ = VecX::Zero(q.size());
-  for (Eigen::Index b = 0; b < q.size(); ++b) {
-    const bool both = !std::isnan(lower_[b]) && !std::isnan(upper_[b]);
-    const double least = both ? std::min(inside, 0.1 * (upper_[b] - lower_[b])) : inside;
-    if (!std::isnan(lower_[b])) q[b] = std::max(q[b], lower_[b] + least);
-    if (!std::isnan(upper_[b])) q[b] = std::min(q[b], upper_[b] - least);
-  }
-  for_each(
-      q, [&](Eigen::Index, double distance, double, double& multiplier) { multiplier = weight / distance; });
-}
-
-double Barrier::value(const VecX& q) const {
-  double sum = 0;
-  if (active())
-    for_each(q, [&](Eigen::Index, double distance, double, double) { sum -= weight_ * std::log(distance); });
-  return sum;
-}
-
-VecX Barrier::gradient(const VecX& q) const {
-  VecX gradient = VecX::Zero(q.size());
-  if (active())
-    for_each(q, [&](Eigen::Index b, double distance, double sign, double) {
-      gradient[b] -= sign * weight_ / distance;
-    });
-  return gradient;
-}
-
-VecX Barrier::curvature(const VecX& q) const {
-  VecX curvature = VecX::Zero(q.size());
-  if (active())
-    for_each(q, [&](Eigen::Index b, double distance, double, double multiplier) {
-      curvature[b] += multiplier / distance;
-    });
-  return curvature;
-}
-
-void Barrier::follow(const VecX& q, const VecX& step) {
-  constexpr double most = 1e8;  // times the multiplier of the barrier alone
-  for_each(q, [&](Eigen::Index b, double distance, double sign, double& multiplier) {
-    const double next = (weight_ - multiplier * sign * step[b]) / distance, alone = weight_ / distance;
-    multiplier = std::clamp(std::max(next, boundary_part * multiplier), alone / most, alone * most);
-  });
-}
-
-VecX Barrier::keep_inside(const VecX& q, VecX next) const {
-  for (Eigen::Index b = 0; b < q.size(); ++b) {
-    if (!std::isnan(lower_[b])) next[b] = std::max(next[b], lower_[b] + boundary_part * (q[b] - lower_[b]));
-    if (!std::isnan(upper_[b])) next[b] = std::min(next[b], upper_[b] - boundary_part * (upper_[b] - q[b]));
-  }
-  return next;
-}
-
-VecX Barrier::settle(VecX q) const {
-  const VecX from = q;
-  for_each(from, [&](Eigen::Index b, double distance, double sign, double multiplier) {
-    if (distance < at_bound && multiplier > distance) q[b] = sign > 0 ? lower_[b] : upper_[b];
-  });
-  return q;
 }
 
 class Compromise {
@@ -597,7 +495,7 @@ bool Compromise::stationary(const Point& at, const VecX& multiplier) const {
 
 bool Compromise::run_inside(Point& now, VecX& multiplier, int& iterations) {
   VecX q = now.state.force_density / per_q();
-  barrier_.begin(inside, q);
+  barrier_.begin(first_barrier, q);
   now = evaluate(system_.state(per_q() * q, now.state.nodes));
   const auto rows = static_cast<double>(std::max<Eigen::Index>(1, now.deviation.size()));
   const auto mean_square = [&] { return now.squares() / rows; };
