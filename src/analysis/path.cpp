@@ -114,9 +114,9 @@ class Driver {
     summary_.newton_iterations += newton.newton_iterations();
     bool lost = std::exchange(lost_, false);
     const bool first = summary_.points.empty() && summary_.failed_attempts == 0;
-    const bool unstable = newton.converged() && workspace_.solver.inertia().negative > 0;
+    const bool unstable = lost && newton.converged() && workspace_.solver.inertia().negative > 0;
     const bool slack = first && !newton.converged() && starts_slack();
-    if ((lost && (!newton.converged() || unstable)) || slack)
+    if ((lost && !newton.converged()) || unstable || slack)
       newton = go_downhill(aim, slack, std::move(newton));
     lost = lost || slack;
     if (!newton.converged()) return shorten(aim, newton.status, newton.reason);

@@ -166,8 +166,8 @@ void add_run_options(CLI::App& command, Request& request) {
 int told(int result) {
   std::cout.flush();
   if (std::cout || result != 0) return result;
-  return report_failure("error: what there is to say cannot be written to the standard output",
-                        ExitCode::library_failed);
+  std::cerr << "error: what there is to say cannot be written to the standard output\n";
+  return static_cast<int>(ExitCode::library_failed);
 }
 
 int command(int argc, char** argv) {

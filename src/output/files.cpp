@@ -26,7 +26,7 @@ using File = std::unique_ptr<std::FILE, CloseFile>;
 
 /// Whether all of `text` reached the disk cache; errno tells why not.
 bool write_all(const std::string& path, std::string_view text) {
-  std::remove(path.c_str());  // of a process of this number that was killed; a link is removed, not followed
+  ::unlink(path.c_str());  // of a process of this number that was killed; a link is removed, not followed
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (descriptor < 0) return false;
   std::FILE* file = fdopen(descriptor, "wb");

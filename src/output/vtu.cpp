@@ -1,5 +1,7 @@
 #include "output/detail/vtu.hpp"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 
@@ -72,7 +74,7 @@ void write_vtu(const std::string& path, const FieldGrid& grid) {
   fill(data, grid);
   const QuietVtk quiet;
   const std::string temporary = path + ".tmp";
-  std::remove(temporary.c_str());  // a link would be followed
+  ::unlink(temporary.c_str());  // a link would be followed
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
   writer->SetFileName(temporary.c_str());
   writer->SetInputData(data);

@@ -102,18 +102,15 @@ void refuse_pushed_cables(const model::Model& structure, const FormNet& net, For
 }
 
 void refuse_collapsed(const model::Model& structure, const FormNet& net, Form& found) {
-  constexpr double nothing = 1e-6;  // of the mean length
+  constexpr double nothing = 1e-6;  // of the length as drawn
   if (!found.converged && !found.compromise) return;
   const auto length = [&](const Points& nodes, std::size_t b) {
     const auto [i, j] = net.net.branches[b];
     return (nodes[i] - nodes[j]).norm();
   };
-  double mean = 0;
-  for (std::size_t b = 0; b < net.cables.size(); ++b)
-    mean += length(found.nodes, b) / static_cast<double>(net.cables.size());
   std::map<std::string, std::pair<int, std::size_t>> collapsed;  // by group: how many, and one of them
   for (std::size_t b = 0; b < net.cables.size(); ++b)
-    if (length(found.nodes, b) < nothing * mean) {
+    if (length(found.nodes, b) < nothing * length(net.net.nodes, b)) {
       auto& [count, one] = collapsed[structure.groups[structure.cables[net.cables[b]].group].name];
       ++count;
       one = b;

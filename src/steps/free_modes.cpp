@@ -88,6 +88,40 @@ MatX without_force(const MatX& motion, const MatX& force, double imbalance) {
   return orthonormal * eigen.eigenvectors().leftCols(count);
 }
 
+/// Of combinations of motions (columns of `basis`) those that no spring to the ground resists, however soft
+/// it is: beside a stiff structure its forces would be taken for rounding.
+MatX without_springs(const assembly::System& system, const std::vector<la::Vector>& motions,
+                     const MatX& basis) {
+  constexpr double nothing = 1e-9;  // of what the largest of these motions does to a spring
+  const auto& model = system.model();
+  std::vector<assembly::System::NodalField> fields;
+  for (const auto& motion : motions) fields.push_back(system.nodal(motion));
+  std::vector<VecX> rows;
+  for (const auto& spring : model.springs) {
+    if (!spring.grounded()) continue;
+    const auto& properties = model.groups[static_cast<std::size_t>(spring.group)].spring;
+    const auto node = static_cast<std::size_t>(spring.nodes.front());
+    for (int k = 0; k < 6; ++k) {
+      const Vec3& stiffness = k < 3 ? properties.stiffness : properties.rotational_stiffness;
+      if (stiffness[k % 3] == 0) continue;
+      VecX row(static_cast<Eigen::Index>(fields.size()));
+      for (std::size_t i = 0; i < fields.size(); ++i)
+        row[static_cast<Eigen::Index>(i)] =
+            k < 3 ? fields[i].displacement[node][k] : system.size() * fields[i].rotation[node][k - 3];
+      rows.push_back(row);
+    }
+  }
+  if (rows.empty() || basis.cols() == 0) return basis;
+  MatX resisted(static_cast<Eigen::Index>(rows.size()), basis.cols());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    resisted.row(static_cast<Eigen::Index>(i)) = rows[i].transpose() * basis;
+  const Eigen::JacobiSVD<MatX> svd(resisted, Eigen::ComputeFullV);
+  Eigen::Index rank = 0;
+  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > nothing * svd.singularValues()[0])
+    ++rank;
+  return basis * svd.matrixV().rightCols(basis.cols() - rank);
+}
+
 }  // namespace
 
 RigidModes rigid_modes(assembly::System& system, const la::SymmetricMatrix& stiffness,
@@ -111,7 +145,7 @@ RigidModes rigid_modes(assembly::System& system, const la::SymmetricMatrix& stif
     for (Eigen::Index j = 0; j < n; ++j) masses(j, k) = motions[static_cast<std::size_t>(j)].dot(product);
   }
   const double left = std::sqrt(la::sum_over_ranks(scaling.force(imbalance).squaredNorm()));
-  const MatX basis = without_force(motion, force, 10 * left);
+  const MatX basis = without_springs(system, motions, without_force(motion, force, 10 * left));
   if (basis.cols() == 0) return {};
   const MatX reduced = basis.transpose() * masses * basis;
   const Eigen::SelfAdjointEigenSolver<MatX> eigen((reduced + reduced.transpose()) / 2);

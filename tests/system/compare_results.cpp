@@ -42,6 +42,8 @@ const std::map<std::string, Tolerance> tolerances{
     {"miss_max", {1e-2, 1e-6}},
     {"miss_rms", {1e-2, 1e-6}},
     {"change", {1e-2, 1e-6}},
+    // lengths that follow from the inverse of what ties do to tensions: a thousandth of what cutters keep
+    {"max_change", {1e-9, 1e-10}},
     {"condition", {1e-2, 0}},
     {"asymmetry", below_the_tolerance},
     // whether the last iteration is needed may hang on the last digit

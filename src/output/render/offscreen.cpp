@@ -1,5 +1,7 @@
 #include "output/render/offscreen.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -79,7 +81,7 @@ void Offscreen::write(const std::string& png_path) {
   image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
   average(pixels->GetPointer(0), image);
   const std::string temporary = png_path + ".tmp";
-  std::remove(temporary.c_str());  // a link would be followed
+  ::unlink(temporary.c_str());  // a link would be followed
   vtkNew<vtkPNGWriter> writer;
   writer->SetFileName(temporary.c_str());
   writer->SetInputData(image);
