@@ -71,14 +71,11 @@ class Tangents {
 
   /// @return whether the tangent has been factored
   bool form(Stability stability) {
-    const bool far = relative_residual(so_far_.iterations.back().norms) > near;
+    const bool guarded = stability == Stability::kept;
+    const bool far = guarded && relative_residual(so_far_.iterations.back().norms) > near;
     if (!far) problem_.tangent(workspace_.tangent);
     foretold_ = far && problem_.extrapolated_tangent(workspace_.tangent);
-    if (stability == Stability::any || begun_singular_) return false;
-    if (!factor()) {
-      begun_singular_ = begun_with_ < 0;  // it has no side of stability to be kept
-      return false;
-    }
+    if (!guarded || !factor()) return false;
     if (begun_with_ < 0) begun_with_ = negative();
     if (!foretold_ || negative() <= begun_with_) return true;
     problem_.tangent(workspace_.tangent);
@@ -104,7 +101,7 @@ class Tangents {
   NonlinearProblem& problem_;
   Workspace& workspace_;
   const NewtonSummary& so_far_;
-  bool foretold_ = false, astray_ = false, begun_singular_ = false;
+  bool foretold_ = false, astray_ = false;
   int begun_with_ = -1;  // negative pivots
 };
 

@@ -108,7 +108,7 @@ class Driver {
     if (la::true_on_any_rank(interrupt_requested())) throw Interrupted();
     const double aim = next_point(reached_, step_, options_.increments);
     problem_.set_lambda(aim);
-    const bool far = !lost_ && aim - reached_ > shortest;
+    const bool far = !plain_ && !lost_ && aim - reached_ > shortest;
     auto newton =
         solve_point(problem_, workspace_, options_, teller(aim), far ? Stability::kept : Stability::any);
     summary_.newton_iterations += newton.newton_iterations();
@@ -259,6 +259,11 @@ class Driver {
     summary_.singular = status == NewtonStatus::singular;
     step_ = std::min(step_, aim - reached_) / 2;
     if (step_ >= options_.min_step) return true;
+    if (summary_.points.empty() &&
+        !std::exchange(plain_, true)) {  // once more as if nothing were known better
+      step_ = 1.0 / options_.increments;
+      return true;
+    }
     problem_.set_lambda(reached_);
     summary_.reason = fmt::format(
         "stopped at lambda = {:.4g}: the step {:.2e} fell below min_step = {:.2e}; the last attempt "
@@ -321,8 +326,9 @@ class Driver {
   la::Inertia inertia_;
   LastResort last_resort_;
   double reached_, step_ = 1.0 / options_.increments;
-  bool lost_;          // no equilibrium is known
-  int negative_ = -1;  // at the last point; not known at the start
+  bool lost_;           // no equilibrium is known
+  bool plain_ = false;  // far steps as short ones, with the true tangent whatever its inertia
+  int negative_ = -1;   // at the last point; not known at the start
 };
 
 }  // namespace

@@ -86,7 +86,8 @@ void Context::set_system(model::Model mesh) {
 }
 
 bool Context::is_lost(const assembly::OutOfBalance& start) const {
-  return !equilibrium_known && start.before >= start.force / 2 && start.before > system_->rounding().force;
+  return !equilibrium_known && start.before >= start.force / 2 &&
+         start.before > 10 * system_->rounding().force;
 }
 
 void Context::note_model() {
