@@ -210,9 +210,8 @@ RelaxationResult relax(const ElasticNet& net, const DynamicRelaxationOptions& op
   result.stress = settled.stress;
   result.tension = settled.tension;
   result.out_of_balance = settled.out_of_balance;
-  const std::string fault = turned_over(net.net, net.film, to_coordinates(result.nodes));
-  result.converged = fault.empty();
-  if (!fault.empty()) result.reason = fault + held_points(net.net, net.film);
+  result.converged = settled.fault.empty();
+  if (!result.converged) result.reason = settled.fault;
   return result;
 }
 

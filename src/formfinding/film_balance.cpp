@@ -50,7 +50,7 @@ class FilmBalance {
   void find_rest(double limit);
   /// The film where it has gone to, with the stress it has there, as the reference.
   void refer_anew();
-  SettledFilm result() const { return {to_points(nodes_), stress_, tension_, largest()}; }
+  SettledFilm result() const { return {to_points(nodes_), stress_, tension_, largest(), {}}; }
 
  private:
   element::MembraneLaw law(std::size_t facet) const {
@@ -164,7 +164,10 @@ SettledFilm settle_film(const ElasticNet& net, const Points& nodes, double toler
     balance.find_rest(limit);
     balance.refer_anew();  // quadrilaterals are given the mean of their points
   }
-  return balance.result();
+  SettledFilm settled = balance.result();
+  settled.fault = turned_over(net.net, net.film, to_coordinates(settled.nodes));
+  if (!settled.fault.empty()) settled.fault += held_points(net.net, net.film);
+  return settled;
 }
 
 }  // namespace tautline::formfinding

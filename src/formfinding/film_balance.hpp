@@ -3,6 +3,7 @@
 /// Balance of a film along itself, which its given stress cannot have on a mesh.
 
 #include <formfinding/net_system.hpp>
+#include <string>
 #include <tautline/formfinding/elastic_net.hpp>
 
 namespace tautline::formfinding {
@@ -12,6 +13,7 @@ struct SettledFilm {
   Points stress;              ///< N11, N22, N12 of each facet in element::membrane_frame of this shape [N/m]
   VecX tension;               ///< of the branches [N]
   double out_of_balance = 0;  ///< largest force at a free node [N]
+  std::string fault;          ///< of facets that have turned over; "" if none has
 };
 
 /// @brief Rest of the net and a film that has in this shape the stress asked for, and is elastic besides.

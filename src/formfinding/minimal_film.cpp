@@ -93,9 +93,8 @@ FilmResult find_minimal_film(const Film& film, const MinimalFilmOptions& options
     result.stress = settled.stress;
     result.cable_tension = settled.tension;
     result.out_of_balance = settled.out_of_balance;
-    const std::string fault = turned_over(film.net, film.facets, to_coordinates(result.nodes));
-    result.converged = fault.empty();
-    if (!fault.empty()) result.reason = fault + held_points(film.net, film.facets);
+    result.converged = settled.fault.empty();
+    if (!result.converged) result.reason = settled.fault;
   }
   for (const auto& facet : film.facets) result.area += area(facet, to_coordinates(result.nodes));
   return result;

@@ -64,6 +64,14 @@ TEST(SoftestMode, HasTheUnitOfTheWeights) {
 }
 
 /// Where an eigenvalue crosses zero, however it bends on the way: the secant alone would creep.
+/// The way along lambda of a problem that is solved everywhere.
+auto along(Spectrum& problem) {
+  return [&problem](double t) -> std::optional<double> {
+    problem.set_lambda(t);
+    return t;
+  };
+}
+
 TEST(CriticalPoint, IsFoundHoweverTheEigenvalueBends) {
   for (const double at : {0.3, 0.9, 0.97}) {
     for (const double power : {1.0, 3.0, 25.0}) {
@@ -79,10 +87,7 @@ TEST(CriticalPoint, IsFoundHoweverTheEigenvalueBends) {
         });
         auto work = workspace();
         problem.set_lambda(0);
-        const auto go = [&](double t) -> std::optional<double> {
-          problem.set_lambda(t);
-          return t;
-        };
+        const auto go = along(problem);
         double behind = 0;
         const auto found = find_critical_point(problem, work, {go, 0, 1, 0}, behind);
         ASSERT_TRUE(found);
@@ -108,10 +113,7 @@ TEST(CriticalPoint, IsTheFirstOfSeveral) {
   });
   auto work = workspace();
   problem.set_lambda(0);
-  const auto go = [&](double t) -> std::optional<double> {
-    problem.set_lambda(t);
-    return t;
-  };
+  const auto go = along(problem);
   double behind = 0;
   const auto found = find_critical_point(problem, work, {go, 0, 2, 0}, behind);
   ASSERT_TRUE(found);

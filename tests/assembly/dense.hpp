@@ -24,9 +24,9 @@ inline model::State some_state(const model::Model& model) {
   return state;
 }
 
-inline MatX dense_tangent(System& system) {
-  auto k = system.new_matrix();
-  system.tangent(k);
+/// Of what multiplies vectors of the system's unknowns.
+template <class Operator>
+MatX dense_of(const Operator& matrix, const System& system) {
   MatX dense(system.n_dofs(), system.n_dofs());
   const auto& layout = system.layout();
   for (int j = 0; j < system.n_dofs(); ++j) {
@@ -34,11 +34,17 @@ inline MatX dense_tangent(System& system) {
     unit[static_cast<std::size_t>(j)] = 1;
     la::Vector x(layout), y(layout);
     x.write(std::span(unit).subspan(3 * layout.first, 3 * layout.local));
-    k.multiply(x, y);
+    matrix.multiply(x, y);
     y.gather(column);
     dense.col(j) = Eigen::Map<const VecX>(column.data(), system.n_dofs());
   }
   return dense;
+}
+
+inline MatX dense_tangent(System& system) {
+  auto k = system.new_matrix();
+  system.tangent(k);
+  return dense_of(k, system);
 }
 
 inline VecX residual_at(System& system, const VecX& increment) {

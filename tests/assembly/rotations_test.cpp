@@ -7,26 +7,13 @@
 
 #include "assembly/dense.hpp"
 #include "assembly/models.hpp"
+#include "assembly/rods.hpp"
 
 namespace tautline::assembly {
 namespace {
 
 using namespace testing_models;
 using std::numbers::pi;
-
-element::BeamSection rod() {
-  return {1e6, 100, 150, 80, 0, 0, 1, 0, 0};
-}
-
-/// One beam from the origin to a point; more in between.
-model::Model beam_to(const Vec3& tip, int parts = 1) {
-  model::Model model;
-  for (int i = 0; i <= parts; ++i) model.nodes.emplace_back(tip * i / parts);
-  const int group = add_beam_group(model, "rod");
-  model.groups[group].beam = rod();
-  for (int i = 0; i < parts; ++i) add_beam(model, group, i, i + 1);
-  return model;
-}
 
 model::Load turn(int node, const Vec3& rotation) {
   model::Load result;

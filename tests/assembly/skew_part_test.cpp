@@ -7,45 +7,12 @@
 
 #include "assembly/dense.hpp"
 #include "assembly/models.hpp"
+#include "assembly/rods.hpp"
 
 namespace tautline::assembly {
 namespace {
 
 using namespace testing_models;
-
-element::BeamSection rod() {
-  element::BeamSection section;
-  section.axial_stiffness = 1e6;
-  section.bending_stiffness_2 = 100;
-  section.bending_stiffness_3 = 150;
-  section.torsion_stiffness = 80;
-  section.mass_per_length = 1;
-  return section;
-}
-
-model::Model beam_to(const Vec3& tip, int parts) {
-  model::Model model;
-  for (int i = 0; i <= parts; ++i) model.nodes.emplace_back(tip * i / parts);
-  const int group = add_beam_group(model, "rod");
-  model.groups[group].beam = rod();
-  for (int i = 0; i < parts; ++i) add_beam(model, group, i, i + 1);
-  return model;
-}
-
-MatX dense_of(const la::SkewPart& skew, const System& system) {
-  MatX dense(system.n_dofs(), system.n_dofs());
-  const auto& layout = system.layout();
-  for (int j = 0; j < system.n_dofs(); ++j) {
-    std::vector<double> unit(static_cast<std::size_t>(system.n_dofs()), 0.0), column;
-    unit[static_cast<std::size_t>(j)] = 1;
-    la::Vector x(layout), y(layout);
-    x.write(std::span(unit).subspan(3 * layout.first, 3 * layout.local));
-    skew.multiply(x, y);
-    y.gather(column);
-    dense.col(j) = Eigen::Map<const VecX>(column.data(), system.n_dofs());
-  }
-  return dense;
-}
 
 /// Held unknowns apart, the derivative of the residual is tangent and skew part together.
 void expect_whole_derivative(System& system) {

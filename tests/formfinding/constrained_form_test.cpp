@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <formfinding/constraint_search.hpp>
+#include <formfinding/loaded_pair.hpp>
 #include <formfinding/nets.hpp>
 #include <limits>
 #include <tautline/formfinding/constraints.hpp>
@@ -14,15 +15,6 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 using Kind = ConstraintKind;
-
-/// Supports at x = -2 and 2, load 6 N down: at lengths 2.5 m the node hangs at z = -1.5 m, each cable carries
-/// 6 x 2.5 / (2 x 1.5) = 5 N, and pulls its support with 4 N along x.
-ConstrainedNet loaded_pair() {
-  ConstrainedNet problem;
-  problem.net = star({{-2, 0, 0}, {2, 0, 0}});
-  problem.net.load = {{0, 0, -6}, Vec3::Zero(), Vec3::Zero()};
-  return problem;
-}
 
 void expect_loaded_pair(const ConstrainedResult& result) {
   ASSERT_TRUE(result.converged) << result.reason;

@@ -6,6 +6,7 @@
 
 #include <Eigen/SVD>
 #include <cmath>
+#include <formfinding/loaded_pair.hpp>
 #include <formfinding/nets.hpp>
 #include <limits>
 #include <tautline/formfinding/constraints.hpp>
@@ -17,18 +18,16 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 using Kind = ConstraintKind;
 
-/// Tensions of 5 N in two cables that a load of 6 N pulls down to z = -1.5 m between supports at x = -2, 2.
-ConstrainedNet loaded_pair() {
-  ConstrainedNet problem;
-  problem.net = star({{-2, 0, 0}, {2, 0, 0}});
-  problem.net.load = {{0, 0, -6}, Vec3::Zero(), Vec3::Zero()};
+/// Tensions of 5 N, at which it hangs at z = -1.5 m.
+ConstrainedNet tensed_pair() {
+  ConstrainedNet problem = loaded_pair();
   problem.constraints = {{Kind::tension, "cables", {0, 1}, {5}}};
   return problem;
 }
 
 TEST(ConstrainedForm, IsTheSameInWhateverUnitOfForce) {
   for (const double unit : {1e-9, 1.0, 1e9}) {
-    ConstrainedNet problem = loaded_pair();
+    ConstrainedNet problem = tensed_pair();
     problem.net.load[0] *= unit;
     problem.constraints[0].value[0] *= unit;
     for (const StepSolver solver : {StepSolver::dense, StepSolver::lsqr, StepSolver::position_newton}) {
@@ -71,7 +70,7 @@ VecX newton_step(const Net& net, const VecX& q, const VecX& wanted) {
 
 TEST(ConstrainedForm, RelaxedStepIsAPartOfNewtons) {
   // With the densities far too high the linear step overshoots into nets that push.
-  ConstrainedNet problem = loaded_pair();
+  ConstrainedNet problem = tensed_pair();
   const Eigen::Vector2d wanted(2.5, 2.4);
   problem.constraints = {{Kind::length, "cables", {0, 1}, {wanted[0], wanted[1]}}};
   int relaxed = 0;
@@ -182,7 +181,7 @@ TEST(ConstrainedForm, KeepsTheForceDensitiesAsUnknownsForConditionAndPublishedJa
     options.max_iterations = 0;
     EXPECT_EQ(find_form(problem, options).method, "lsqr");
   }
-  ConstrainedNet small = loaded_pair();
+  ConstrainedNet small = tensed_pair();
   EXPECT_EQ(find_form(small).method, "dense");
 }
 
