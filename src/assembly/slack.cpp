@@ -25,7 +25,8 @@ class Loose {
     for (std::size_t i = 0; i < model_.cables.size(); ++i) {
       const auto& cable = model_.cables[i];
       const bool only_pulls = model_.groups[cable.group].kind == model::ElementKind::cable;
-      mark(cable.nodes, only_pulls && response.cables[i].slack);
+      const double level = nearly_none * model_.axial_stiffness(cable);
+      mark(cable.nodes, only_pulls && response.cables[i].tension <= level);
     }
     for (std::size_t i = 0; i < model_.membranes.size(); ++i)
       mark(model_.membranes[i].nodes, response.membranes[i].state != element::MembraneState::taut);
@@ -55,6 +56,7 @@ class Loose {
     return slack_[at] && !firm_[at] && block >= 0 && system_.kinematics().plain(node);
   }
 
+  static constexpr double nearly_none = 1e-9;  // strain that a solve may leave where the last load has gone
   const System& system_;
   const model::Model& model_;
   std::vector<bool> slack_, firm_;
