@@ -88,12 +88,12 @@ MatX without_force(const MatX& motion, const MatX& force, double imbalance) {
   return orthonormal * eigen.eigenvectors().leftCols(count);
 }
 
-/// Of combinations of motions (columns of `basis`) those that no spring to the ground resists, however soft
-/// it is: beside a stiff structure its forces would be taken for rounding.
-MatX without_springs(const assembly::System& system, const std::vector<la::Vector>& motions,
-                     const MatX& basis) {
-  constexpr double nothing = 1e-9;  // of what the largest of these motions does to a spring
+/// Combinations of the motions (columns) that no spring to the ground resists, however soft it is: beside a
+/// stiff structure its forces would be taken for rounding.
+MatX without_springs(const assembly::System& system, const std::vector<la::Vector>& motions) {
+  constexpr double nothing = 1e-9;  // of what the largest of the motions does to the springs
   const auto& model = system.model();
+  const auto n = static_cast<Eigen::Index>(motions.size());
   std::vector<assembly::System::NodalField> fields;
   for (const auto& motion : motions) fields.push_back(system.nodal(motion));
   std::vector<VecX> rows;
@@ -102,24 +102,21 @@ MatX without_springs(const assembly::System& system, const std::vector<la::Vecto
     const auto& properties = model.groups[static_cast<std::size_t>(spring.group)].spring;
     const auto node = static_cast<std::size_t>(spring.nodes.front());
     for (int k = 0; k < 6; ++k) {
-      const Vec3& stiffness = k < 3 ? properties.stiffness : properties.rotational_stiffness;
-      if (stiffness[k % 3] == 0) continue;
-      VecX row(static_cast<Eigen::Index>(fields.size()));
-      for (std::size_t i = 0; i < fields.size(); ++i)
-        row[static_cast<Eigen::Index>(i)] =
-            k < 3 ? fields[i].displacement[node][k] : system.size() * fields[i].rotation[node][k - 3];
-      rows.push_back(row);
+      if ((k < 3 ? properties.stiffness[k] : properties.rotational_stiffness[k - 3]) == 0) continue;
+      VecX& row = rows.emplace_back(n);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const auto& field = fields[static_cast<std::size_t>(i)];
+        row[i] = k < 3 ? field.displacement[node][k] : system.size() * field.rotation[node][k - 3];
+      }
     }
   }
-  if (rows.empty() || basis.cols() == 0) return basis;
-  MatX resisted(static_cast<Eigen::Index>(rows.size()), basis.cols());
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    resisted.row(static_cast<Eigen::Index>(i)) = rows[i].transpose() * basis;
+  if (rows.empty()) return MatX::Identity(n, n);
+  MatX resisted(static_cast<Eigen::Index>(rows.size()), n);
+  for (std::size_t i = 0; i < rows.size(); ++i) resisted.row(static_cast<Eigen::Index>(i)) = rows[i];
   const Eigen::JacobiSVD<MatX> svd(resisted, Eigen::ComputeFullV);
-  Eigen::Index rank = 0;
-  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > nothing * svd.singularValues()[0])
-    ++rank;
-  return basis * svd.matrixV().rightCols(basis.cols() - rank);
+  const VecX& values = svd.singularValues();
+  const auto rank = (values.array() > nothing * values[0]).count();
+  return svd.matrixV().rightCols(n - rank);
 }
 
 }  // namespace
@@ -145,7 +142,9 @@ RigidModes rigid_modes(assembly::System& system, const la::SymmetricMatrix& stif
     for (Eigen::Index j = 0; j < n; ++j) masses(j, k) = motions[static_cast<std::size_t>(j)].dot(product);
   }
   const double left = std::sqrt(la::sum_over_ranks(scaling.force(imbalance).squaredNorm()));
-  const MatX basis = without_springs(system, motions, without_force(motion, force, 10 * left));
+  const MatX unsprung = without_springs(system, motions);
+  if (unsprung.cols() == 0) return {};
+  const MatX basis = unsprung * without_force(motion * unsprung, force * unsprung, 10 * left);
   if (basis.cols() == 0) return {};
   const MatX reduced = basis.transpose() * masses * basis;
   const Eigen::SelfAdjointEigenSolver<MatX> eigen((reduced + reduced.transpose()) / 2);
