@@ -48,6 +48,7 @@ Json with_one_mass(Random& random) {
 /// omega^2 m is one over the largest eigenvalue of the flexibility that small forces at the mass show.
 std::optional<Trial> frequency_and_probe(const Json& deck, Random&) {
   if (!deck["model"]["elements"].contains("point")) return std::nullopt;
+  if (deck["steps"].size() < 2 || deck["steps"].back()["kind"] != "modal") return std::nullopt;
   const std::string node = deck["model"]["elements"]["point"][0][0];
   const double mass = deck["sections"]["point"]["mass"], size = size_of(deck);
   Trial trial;
@@ -78,10 +79,13 @@ std::optional<Trial> frequency_and_probe(const Json& deck, Random&) {
   trial.judge = [=](const Outcomes& o) {
     Mat3 flexibility;
     const std::string key = "node " + node + " displacement";
-    for (int k = 0; k < 3; ++k)
-      flexibility.col(k) =
-          (o[static_cast<std::size_t>(1 + 2 * k)].at(key) - o[static_cast<std::size_t>(2 + 2 * k)].at(key)) /
-          (2 * force(o[0]));
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 &there = o[static_cast<std::size_t>(1 + 2 * k)].at(key),
+                 &back = o[static_cast<std::size_t>(2 + 2 * k)].at(key);
+      // Near an instability the forces that show the softest direction lead to another equilibrium across it.
+      if ((there + back - 2 * o[0].at(key)).norm() > 1e-3 * size) return std::vector<Difference>{};
+      flexibility.col(k) = (there - back) / (2 * force(o[0]));
+    }
     const Mat3 symmetric = (flexibility + flexibility.transpose()) / 2;
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(symmetric);
     const double softest = solver.eigenvalues().cwiseAbs().maxCoeff();

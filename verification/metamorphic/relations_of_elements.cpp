@@ -232,7 +232,15 @@ std::optional<Trial> bar_for_cable(const Json& deck, Random& random) {
   if (!any) return std::nullopt;
   Trial trial;
   trial.jobs = {{deck}, {other}};
+  trial.any_end = true;  // where cables go slack the other one may end otherwise
   trial.judge = [](const Outcomes& o) {
+    if (o[0].done() != o[1].done()) {
+      const auto& done = o[0].done() ? o[0] : o[1];
+      const auto& other = o[0].done() ? o[1] : o[0];
+      if (!taut_all_along(done)) return std::vector<Difference>{};
+      return std::vector<Difference>{{"taut all along, but one ends otherwise: " + other.message, 10}};
+    }
+    if (!o[0].done()) return std::vector<Difference>{};
     if (!taut_all_along(o[0]) || !taut_all_along(o[1])) return std::vector<Difference>{};
     auto a = of_elements(o[0]), b = of_elements(o[1]);
     leave_out_slack_factors(a, b);
