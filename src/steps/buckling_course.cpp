@@ -11,7 +11,8 @@ namespace {
 
 constexpr double small_deformation = 1e-5;  // of the elements, where the tangent is linear in the load
 constexpr int most_rounds = 20;             // until branches and response agree
-constexpr int most_switches = 30;
+constexpr int most_places = 30;             // along the load where cables go slack or taut
+constexpr double one_place = 1e-4;  // of the load factor: a place is left whole, whatever rounding does there
 
 la::Vector copy_of(const la::Vector& x) {
   la::Vector copy = la::Vector::like(x);
@@ -124,13 +125,15 @@ std::optional<double> BucklingCourse::next_switch() const {
 
 /// Along the present response to the next switch.
 void BucklingCourse::advance(double step) {
+  constexpr double together = 1e-6;  // of their tensions: cables of a symmetric structure go slack as one
   way_.add(step, rate_);
   lambda_ += step;
   for (std::size_t i = 0; i < pulls_.size(); ++i) {
     const auto& pull = pulls_[i];
     const double before = tension_[i];
     tension_[i] += step * pull.rate;
-    if (before == 0 || std::abs(tension_[i]) > rounding_of(pull.cable) + 1e-9 * std::abs(before)) continue;
+    if (before == 0 || std::abs(tension_[i]) > rounding_of(pull.cable) + together * std::abs(before))
+      continue;
     tension_[i] = 0;
     branches_[static_cast<std::size_t>(pull.cable)] = pull.rate > 0 ? Branch::taut : Branch::slack;
   }
@@ -153,17 +156,20 @@ void BucklingCourse::take_factors_here(const la::SymmetricMatrix& before, const 
 }
 
 void BucklingCourse::find(int count, la::Extreme which, double limit) {
-  for (int switches = 0;; ++switches) {
+  double place = 0;  // of the last switches
+  for (int places = 0;;) {
     const auto tangent = system_.tangent_at(ray());
     const auto change = system_.stress_change(ray());
     const auto next = which == la::Extreme::both ? std::nullopt : next_switch();
-    stopped_short_ = next && switches == most_switches;
+    const bool new_place = next && *next > place * (1 + one_place);
+    stopped_short_ = new_place && places == most_places;
     if (next && !stopped_short_) {
       const double step = std::min(*next, limit) - lambda_;
       const auto before = tangent.plus(step / (2 * h_), change);
       if (is_stable(before)) {
         if (*next > limit) return;
         advance(step);
+        if (new_place) place = lambda_, ++places;
         const auto now = system_.tangent_at(ray());
         if (!is_stable(now)) return take_factors_here(before, now, count);
         settle();
