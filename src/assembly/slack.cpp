@@ -21,13 +21,9 @@ class Loose {
         model_(system.model()),
         slack_(model_.nodes.size(), false),
         firm_(model_.nodes.size(), false) {
-    const auto response = model::evaluate_response(model_, system.state());
-    for (std::size_t i = 0; i < model_.cables.size(); ++i) {
-      const auto& cable = model_.cables[i];
-      const bool only_pulls = model_.groups[cable.group].kind == model::ElementKind::cable;
-      const double level = nearly_none * model_.axial_stiffness(cable);
-      mark(cable.nodes, only_pulls && response.cables[i].tension <= level);
-    }
+    const auto& state = system.state();
+    const auto response = model::evaluate_response(model_, state);
+    for (const auto& cable : model_.cables) mark(cable.nodes, model::is_slack(model_, state, cable));
     for (std::size_t i = 0; i < model_.membranes.size(); ++i)
       mark(model_.membranes[i].nodes, response.membranes[i].state != element::MembraneState::taut);
     const auto mark_firm = [&](const auto& elements) {
@@ -56,7 +52,6 @@ class Loose {
     return slack_[at] && !firm_[at] && block >= 0 && system_.kinematics().plain(node);
   }
 
-  static constexpr double nearly_none = 1e-9;  // strain that a solve may leave where the last load has gone
   const System& system_;
   const model::Model& model_;
   std::vector<bool> slack_, firm_;

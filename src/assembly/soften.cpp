@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include <tautline/assembly/system.hpp>
-#include <tautline/element/cable.hpp>
 #include <tautline/element/membrane.hpp>
 #include <tautline/la/session.hpp>
 #include <tautline/model/element_data.hpp>
+#include <tautline/model/response.hpp>
 
 #include "assembly/expansion.hpp"
 #include "assembly/own_elements.hpp"
@@ -40,10 +40,7 @@ bool is_taut(const model::Model& model, const model::State& state, const model::
 
 /// What a row of the element's tangent would sum up to if it were taut; zero if it is.
 double missing_stiffness(const model::Model& model, const model::State& state, const model::Cable& cable) {
-  if (model.groups[cable.group].kind != model::ElementKind::cable) return 0;
-  const auto data = model::cable_data(model, cable);
-  const auto u = model::displacements<2>(state, cable.nodes);
-  if (!element::evaluate_cable(data.properties, data.x_ref, u, Want::force).slack) return 0;
+  if (!model::is_slack(model, state, cable)) return 0;
   return 2 * model.axial_stiffness(cable) / model.unstressed_length(cable);
 }
 
@@ -99,7 +96,7 @@ double System::soften(double limit) {
   for (auto& cable : model_.cables) {
     own_->factor.push_back(cable.stiffness_factor);
     const double ratio = model_.axial_stiffness(cable) / limit;
-    if (model_.groups[cable.group].kind != model::ElementKind::cable || ratio <= 1) continue;
+    if (!model::only_pulls(model_, cable) || ratio <= 1) continue;
     cable.stiffness_factor /= ratio;
     largest = std::max(largest, ratio);
   }

@@ -60,6 +60,17 @@ element::ShellForces shell_result(const Model& model, const State& state, const 
 
 }  // namespace
 
+bool only_pulls(const Model& model, const Cable& cable) {
+  const auto kind = model.groups[cable.group].kind;
+  return kind == ElementKind::cable || kind == ElementKind::catenary;
+}
+
+bool is_slack(const Model& model, const State& state, const Cable& cable) {
+  constexpr double nearly_none = 1e-9;
+  return only_pulls(model, cable) &&
+         cable_result(model, state, cable).tension <= nearly_none * model.axial_stiffness(cable);
+}
+
 Response evaluate_response(const Model& model, const State& state) {
   Response response;
   response.cables.reserve(model.cables.size());

@@ -95,10 +95,14 @@ FormFindingOptions options_of_rear(const Context& context, const FormFindingOpti
   rear.method = FormMethod::constraints;
   for (const auto& name : rear.net) {
     const auto& group = context.deck.groups.at(name);
-    if (group.tension)
-      rear.constraints.push_back({formfinding::ConstraintKind::tension, {name}, {*group.tension}, {}});
-    else
+    if (!group.tension) {
       rear.hold.push_back(name);
+      continue;
+    }
+    auto& demand = rear.constraints.emplace_back();
+    demand.kind = formfinding::ConstraintKind::tension;
+    demand.on = {name};
+    demand.value = {*group.tension};
   }
   return rear;
 }

@@ -69,6 +69,17 @@ TEST(Slack, ChainsDrawnStraightHangAsTheyMust) {
       }
 }
 
+TEST(Slack, ChainsOfCatenariesHangAsThoseOfCables) {
+  for (const double weight : {0.0, 1e-9}) {
+    auto model = straight_chain(6, 1.1, 2e8);
+    model.groups[0].kind = model::ElementKind::catenary;
+    model.groups[0].cable.mass_per_length = weight;
+    System system(model);
+    solve(system, loaded(model, 5));
+    EXPECT_NEAR(system.state().displacement[3].norm(), sag_of_chain(6, 10, 11.0 / 6, 2e8, 5), 1e-7) << weight;
+  }
+}
+
 TEST(Slack, ElementsHaveTheirOwnStiffnessAgainAfterwards) {
   const auto model = straight_chain(6, 1.1, 2e8);
   System system(model);

@@ -39,6 +39,13 @@ struct Response {
 /// Evaluates every element (serial; a few milliseconds for 10^5 elements).
 Response evaluate_response(const Model& model, const State& state);
 
+/// Whether it resists pull alone: a cable or a catenary, no bar.
+bool only_pulls(const Model& model, const Cable& cable);
+
+/// Whether it only pulls and does not pull, or by no more than a solve may leave where the last load has gone
+/// (a strain of 1e-9).
+bool is_slack(const Model& model, const State& state, const Cable& cable);
+
 /// Principal values of a symmetric tensor (T11, T22, T12), larger first.
 Vec<2> principal_values(const Vec3& tensor);
 
