@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <tautline/core/text.hpp>
+#include <tautline/model/names.hpp>
 #include <tautline/model/response.hpp>
 
 namespace tautline::assembly {
@@ -199,12 +200,11 @@ std::string sentence(const System& system, const Slack& slack) {
   tell(model, model.cables, slack.cables, "cable", parts);
   for (const int node : slack.nodes) {
     if (places.size() == most) break;
-    const Vec3 at = model.nodes[static_cast<std::size_t>(node)];
-    places.push_back(fmt::format("({:.4g}, {:.4g}, {:.4g})", at.x(), at.y(), at.z()));
+    places.push_back(model::node_at(model, node));
   }
   return fmt::format(
-      "slack: {}, at the node{} drawn at {}{}. Nothing loads {} and nothing resists: where {} undetermined",
-      join(parts, ", ", parts.size()), slack.nodes.size() == 1 ? "" : "s", join(places, ", ", places.size()),
+      "slack: {}, about {}{}, as drawn. Nothing loads {} and nothing resists: where {} undetermined",
+      join(parts, ", ", parts.size()), join(places, ", ", places.size()),
       slack.nodes.size() > most ? fmt::format(" and {} more", slack.nodes.size() - most) : "",
       slack.nodes.size() == 1 ? "it" : "them", slack.nodes.size() == 1 ? "it is, is" : "they are, is");
 }
