@@ -444,9 +444,9 @@ std::vector<double> System::largest_strains(const la::Vector& response) const {
       const double change = end_.temperature[next] - start_.temperature[next];
       const double free = expansion_of(model_.groups[element.group]) * change;
       ++next;
-      const auto n = element.nodes.size();
+      const std::size_t n = element.nodes.size(), sides = n == 2 ? 1 : n;
       double& most = largest[static_cast<std::size_t>(element.group)];
-      for (std::size_t i = 0; i < (n == 2 ? 1 : n); ++i) {
+      for (std::size_t i = 0; i < sides; ++i) {
         const auto a = element.nodes[i], b = element.nodes[(i + 1) % n];
         const Vec3 side = places[b] - places[a];
         const double stretch = side.dot(field.displacement[b] - field.displacement[a]) / side.squaredNorm();
