@@ -276,8 +276,9 @@ class System : public analysis::PathProblem {
   /// structure as drawn, wherever it is now.
   Acting acting(const Boundary& boundary, const std::vector<double>& strains) const;
   void add_element_loads(const model::Load& load, Acting& to) const;
-  /// Compares what each load is by its definition with what acts of it. @throws std::logic_error if they
-  /// differ
+  /// What the sum of the loads is by definition and what acts of it, if they differ; else nothing.
+  std::string load_fault(const std::vector<model::Load>& loads, const std::vector<double>& strains) const;
+  /// The same for the loads of each name, in few sums. @throws std::logic_error if a name's differ
   void audit_loads(const Boundary& boundary, const std::vector<double>& strains) const;
   /// The same along the axes of supports, moments about them also where rotations are held in part.
   std::vector<double> nodal_imbalance() const;
