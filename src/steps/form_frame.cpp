@@ -14,10 +14,10 @@ namespace tautline::steps {
 
 namespace {
 
-constexpr int most_rounds = 60;
+constexpr int most_rounds = 100;
 constexpr std::size_t anderson_depth = 60;
 constexpr double settled_frame = 1e-10;  // distance of the frame from where the net was found, over the size
-constexpr double diverging = 10;         // times the least distance: the net yields too much
+constexpr double diverging = 30;         // times the least distance: the net yields too much
 constexpr int impatience = 8;            // rounds in which the frame comes no nearer: likewise
 constexpr int patience = 12;             // rounds in which the frame comes no nearer
 
@@ -162,32 +162,38 @@ void Rounds::fail(const std::string& reason) {
 
 Form Rounds::run(Json& entry) {
   Anderson acceleration(anderson_depth);
-  VecX edge = edge_of(net_, frame_.positions()), plain = edge, last_good = edge, nearest_edge = edge;
+  VecX edge = edge_of(net_, frame_.positions()), plain = edge, nearest_edge = edge;
+  auto nearest_motion = frame_.motion();
   double at_restart = 0;  // of the acceleration: the least distance by then
   bool accelerated = false, there = false;
   while (static_cast<int>(changes_.size()) < most_rounds && since_ < patience) {
+    const auto before = frame_.motion();
     const bool found = find_net(edge);
     if (found && last_.compromise) break;  // no more than this net is to be had of the drawn frame
     if (!found || !rest()) {
       // The acceleration led astray, or the frame went too far under a net that yields too much.
       if (!accelerated && !frame_.stiffen_net()) break;
       if (!any_) break;
-      edge = accelerated ? plain : found ? edge : last_good;
+      edge = accelerated ? plain : nearest_edge;
+      frame_.return_to(accelerated ? before : nearest_motion);
       acceleration.restart();
       accelerated = false;
       why_.clear();
       continue;
     }
-    last_good = edge;
     plain = edge_of(net_, frame_.positions());
     const double distance = largest_motion(edge, plain);
-    if (distance < nearest_) nearest_edge = edge;
+    if (distance < nearest_) {
+      nearest_edge = edge;
+      nearest_motion = before;
+    }
     if (changes_.empty()) at_restart = distance;
     const bool farther = distance > diverging * nearest_ || since_ >= impatience;
     there = settled(distance);
     if (there) break;
     if (farther && (nearest_ < at_restart / 2 || frame_.stiffen_net())) {
       edge = nearest_edge;
+      frame_.return_to(nearest_motion);
       acceleration.restart();
       accelerated = false;
       at_restart = nearest_;

@@ -27,9 +27,9 @@ constexpr std::array<double, 5> net_yields{force_density_kept, 3, 30, 300,
 /// mechanism.
 constexpr double own_cables_yield = 30;
 constexpr double coarsest_step = 0.1;  // of a path that may be tried again with a stiffer net
-constexpr double tightness = 1e-12;  // of the frame's equilibrium, a round of many
-constexpr int most_rounds = 100;     // for the shape without stress
-constexpr int patience = 6;          // rounds in which the force left does not fall: it is rounding
+constexpr double tightness = 1e-12;    // of the frame's equilibrium, a round of many
+constexpr int most_rounds = 100;       // for the shape without stress
+constexpr int patience = 6;            // rounds in which the force left does not fall: it is rounding
 
 /// The same cable between ends elsewhere.
 void keep_unstressed_length(const Points& from, const Points& to, model::Cable& cable) {

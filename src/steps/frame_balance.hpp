@@ -19,6 +19,9 @@ class Frame {
   /// Where the structure's nodes are, or shall be, under the net [m].
   Points positions() const;
   double largest_displacement() const;
+  /// From the shape without stress to positions(), in a frame made as drawn.
+  const model::InitialMotion& motion() const { return motion_; }
+  void return_to(const model::InitialMotion& motion) { motion_ = motion; }
   /// @brief Lets the cables of the net yield less while the frame moves: the frame that buckles under a net
   /// of given force densities may stand when its cables resist.
   /// @return false if they are as stiff as they are
