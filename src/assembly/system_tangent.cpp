@@ -225,10 +225,13 @@ void System::assemble_tangent(la::SymmetricMatrix& k, const ContributionOf& cont
         add_free(expansion.blocks(), transformed, held(), k);
       });
   for (int block = map_.layout.first; block < map_.layout.first + map_.layout.local; ++block) {
-    Mat3 identity = Mat3::Zero();
+    Mat3 diagonal = Mat3::Zero();
     for (int c = 0; c < 3; ++c)
-      if (held()[static_cast<std::size_t>(3 * block + c)]) identity(c, c) = support_stiffness_;
-    k.add(std::array<int, 1>{block}, identity.data());
+      if (const auto at = static_cast<std::size_t>(3 * block + c); held()[at])
+        diagonal(c, c) = support_stiffness_;
+      else if (!bracing_.empty())
+        diagonal(c, c) = bracing_[at];
+    k.add(std::array<int, 1>{block}, diagonal.data());
   }
   k.finish();
 }
