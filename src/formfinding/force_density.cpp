@@ -8,6 +8,7 @@
 #include <formfinding/constraint_search.hpp>
 #include <formfinding/position_search.hpp>
 #include <tautline/core/error.hpp>
+#include <tautline/formfinding/node_error.hpp>
 #include <utility>
 
 namespace tautline::formfinding {
@@ -26,8 +27,8 @@ void check_targets(const Net& net, const VecX& target, const ForceDensityOptions
         fmt::format("the net has {} branches, but {} target tensions", net.branches.size(), target.size()));
   for (Eigen::Index b = 0; b < target.size(); ++b)
     if (!std::isnan(target[b]) && !(std::isfinite(target[b]) && target[b] > 0))
-      throw ModelError(
-          fmt::format("the target tension of branch {} must be positive, not {} N", b, target[b]));
+      throw NetError({"the target tension of ", branch_word(static_cast<int>(b)),
+                      fmt::format(" must be positive, not {} N", target[b])});
   if (!(options.initial_force_density > 0))
     throw ModelError(
         fmt::format("the initial force density must be positive, not {} N/m", options.initial_force_density));
