@@ -1,7 +1,9 @@
 #include "assembly/load_audit.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -246,32 +248,91 @@ void add_definition(const Model& model, const std::vector<double>& strains, cons
   if (load.heats()) add_heat(model, selected, load, sum);
 }
 
-void System::audit_loads(const Boundary& boundary, const std::vector<double>& strains) const {
-  constexpr double rounding = 1e-10;
-  if (boundary.loads.empty()) return;
-  const Kinematics drawn(model_, map_);  // without supports, at rest
-  const auto motions = rigid_motions(model_, size_);
-  const auto compare = [&](const Load& load, const char* what, double defined, double found, double size) {
-    if (!(std::abs(found - defined) <= rounding * size))
-      throw std::logic_error(
-          fmt::format("{}: {} is {:.10g} by its definition, but {:.10g} acts on the structure", load.title(),
-                      what, defined, found));
-  };
-  for (auto first = boundary.loads.begin(), last = first; first != boundary.loads.end(); first = last) {
+namespace {
+
+/// Where each name begins in a list of loads, and the end.
+std::vector<std::size_t> names_of(const std::vector<Load>& loads) {
+  std::vector<std::size_t> starts;
+  for (std::size_t i = 0; i < loads.size(); ++i)
+    if (i == 0 || loads[i].name != loads[i - 1].name) starts.push_back(i);
+  starts.push_back(loads.size());
+  return starts;
+}
+
+/// The loads of each name times what makes all names about as large, and no two alike: in a sum none is lost
+/// beside larger ones, nor what two of them lack against each other.
+std::vector<Load> evened(const Model& model, const std::vector<double>& strains, double size,
+                         std::vector<Load> loads) {
+  const auto names = names_of(loads);
+  for (std::size_t k = 0; k + 1 < names.size(); ++k) {
     LoadSum sum;
-    for (; last != boundary.loads.end() && last->name == first->name; ++last)
-      add_definition(model_, strains, *last, sum);
-    const Acting alone = acting({{}, {first, last}}, strains);
-    compare(*first, "the sum of temperature times size", sum.heat, heat_of(model_, alone), sum.heat_size);
-    if (sum.force_size == 0 && sum.moment_size == 0) continue;
-    const auto force = assembled(model_, map_, drawn, alone);
-    for (const auto& motion : motions) {
-      const double way = motion.displacement.norm(), spin = motion.spin.norm();
-      compare(*first, spin == 0 ? "its force times the size of the structure" : "its moment about an axis",
-              sum.force.dot(motion.displacement) + sum.moment.dot(motion.spin),
-              work_of(force, model_, map_, drawn, motion),
-              sum.force_size * (way + size_ * spin) + sum.moment_size * spin);
-    }
+    for (std::size_t i = names[k]; i < names[k + 1]; ++i) add_definition(model, strains, loads[i], sum);
+    const double force = sum.force_size + sum.moment_size / size, whole = force > 0 ? force : sum.heat_size;
+    if (whole == 0) continue;
+    const double factor = (1.5 + std::sin(1.3 * static_cast<double>(k))) / whole;
+    for (std::size_t i = names[k]; i < names[k + 1]; ++i) loads[i] = scaled(loads[i], factor);
+  }
+  return loads;
+}
+
+/// The first of the names [first, last) whose loads do not arrive, if `wrong(first, last)` of the sum of
+/// some.
+std::size_t first_wrong(std::size_t first, std::size_t last,
+                        const std::function<bool(std::size_t, std::size_t)>& wrong) {
+  if (!wrong(first, last)) return last;
+  while (last - first > 1) {
+    const std::size_t middle = (first + last) / 2;
+    (wrong(first, middle) ? last : first) = middle;
+  }
+  return first;
+}
+
+}  // namespace
+
+std::string System::load_fault(const std::vector<Load>& loads, const std::vector<double>& strains) const {
+  constexpr double rounding = 1e-10;
+  std::string fault;
+  const auto compare = [&](const char* what, double defined, double found, double size) {
+    if (fault.empty() && !(std::abs(found - defined) <= rounding * size))
+      fault = fmt::format("{} is {:.10g} by its definition, but {:.10g} acts on the structure", what, defined,
+                          found);
+  };
+  LoadSum sum;
+  for (const auto& load : loads) add_definition(model_, strains, load, sum);
+  const Acting alone = acting({{}, loads}, strains);
+  compare("the sum of temperature times size", sum.heat, heat_of(model_, alone), sum.heat_size);
+  if (sum.force_size == 0 && sum.moment_size == 0) return fault;
+  const Kinematics drawn(model_, map_);  // without supports, at rest
+  const auto force = assembled(model_, map_, drawn, alone);
+  for (const auto& motion : rigid_motions(model_, size_)) {
+    const double way = motion.displacement.norm(), spin = motion.spin.norm();
+    compare(spin == 0 ? "its force times the size of the structure" : "its moment about an axis",
+            sum.force.dot(motion.displacement) + sum.moment.dot(motion.spin),
+            work_of(force, model_, map_, drawn, motion),
+            sum.force_size * (way + size_ * spin) + sum.moment_size * spin);
+  }
+  return fault;
+}
+
+void System::audit_loads(const Boundary& boundary, const std::vector<double>& strains) const {
+  constexpr std::size_t most = 16;  // sums looked at, however many names there are
+  const auto& loads = boundary.loads;
+  const auto names = names_of(loads);
+  const std::size_t n = names.size() - 1, in_one = (n + most - 1) / most;
+  if (n == 0) return;
+  const auto fault_of = [&](const std::vector<Load>& from, std::size_t first, std::size_t last) {
+    const auto at = [&](std::size_t name) { return from.begin() + static_cast<std::ptrdiff_t>(names[name]); };
+    return load_fault({at(first), at(last)}, strains);
+  };
+  const auto even = in_one > 1 ? evened(model_, strains, size_, loads) : loads;
+  for (std::size_t first = 0; first < n; first += in_one) {
+    const std::size_t end = std::min(first + in_one, n),
+                      name = first_wrong(first, end, [&](std::size_t a, std::size_t b) {
+                        return !fault_of(even, a, b).empty();
+                      });
+    if (name == end) continue;
+    const auto fault = fault_of(loads, name, name + 1);
+    if (!fault.empty()) throw std::logic_error(fmt::format("{}: {}", loads[names[name]].title(), fault));
   }
 }
 

@@ -267,6 +267,29 @@ TEST(LoadAudit, FindsAMomentThatNothingTakesUp) {
   EXPECT_THROW(system.begin_stage({{support({0, 2})}, {load(1, {0, 0, 0}, {0, 0, 1})}}), std::logic_error);
 }
 
+TEST(LoadAudit, FindsOneNameAmongManyThoughTheSumIsRight) {
+  model::Model model;
+  for (int i = 0; i <= 40; ++i) model.nodes.emplace_back(i, 0, 0);
+  const int rope = add_cable_group(model, "rope");
+  for (int i = 0; i < 40; ++i) add_cable(model, rope, i, i + 1, 1e-3);
+  Boundary boundary{{support({0, 40})}, {}};
+  for (int i = 1; i < 40; ++i) {
+    boundary.loads.push_back(load(i, {1e9, 0, 1e9}));
+    boundary.loads.back().name = std::to_string(i);
+  }
+  System system(model);
+  EXPECT_NO_THROW(system.begin_stage(boundary));
+  boundary.loads[17].moment = {0, 0, 1};  // nothing takes these up, and they are opposite
+  boundary.loads[18].moment = {0, 0, -1};
+  boundary.loads[17].force = boundary.loads[18].force = {0, 1e-3, 0};
+  try {
+    system.begin_stage(boundary);
+    ADD_FAILURE() << "nothing was found";
+  } catch (const std::logic_error& error) {
+    EXPECT_NE(std::string(error.what()).find("\"18\""), std::string::npos) << error.what();
+  }
+}
+
 TEST(LoadFaults, AreToldAltogether) {
   auto model = mixture();
   model.supports.push_back(support({0, 3}, clamped));

@@ -105,9 +105,15 @@ def least_energy(start):
                 here[key] = potential(start, stiffness, x)
             return here[key]
 
-        x = scipy.optimize.minimize(lambda x: at(x)[0] / (force * start.size), x, jac=lambda x: at(x)[1] / (force * start.size),
-                                    hess=lambda x: at(x)[2] / (force * start.size), method="trust-exact",
-                                    options={"gtol": 1e-9 / start.size, "maxiter": 2000, "initial_trust_radius": 0.1 * start.size, "max_trust_radius": start.size}).x
+        def least(method):
+            return scipy.optimize.minimize(lambda x: at(x)[0] / (force * start.size), x, jac=lambda x: at(x)[1] / (force * start.size),
+                                           hess=lambda x: at(x)[2] / (force * start.size), method=method,
+                                           options={"gtol": 1e-9 / start.size, "maxiter": 2000, "initial_trust_radius": 0.1 * start.size, "max_trust_radius": start.size}).x
+
+        try:
+            x = least("trust-exact")
+        except ValueError:  # where its own factorisation meets a singular Hessian
+            x = least("trust-krylov")
         if stiffness == start.stiffness:
             return x
         stiffness = min(start.stiffness, 10 * stiffness)
