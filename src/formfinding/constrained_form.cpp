@@ -309,7 +309,7 @@ bool FormSearch::try_positions() {
   const double limit = std::max(1e-10, options_.tolerance) * largest;
   const PositionResult found =
       find_positions(system_, tension, start_, limit, options_.max_iterations, progress_);
-  if (!found.converged && !asked) return false;
+  if (!found.converged && !asked && start_.size() <= most_compromising) return false;
   result_.method = "position_newton";
   result_.iterations = found.iterations;
   result_.inner_iterations = found.inner_iterations;

@@ -19,6 +19,7 @@ constexpr int largest_dense = 2000;  // rows of G^T G for which the condition nu
 constexpr int many_branches = 2000;  // from here on the positions are the unknowns where they can be
 constexpr double balance_limit =
     1e-9;  // of the largest force out of balance, relative to the largest tension
+constexpr int most_by_densities = 20000;    // branches; more take hours
 constexpr double position_balance = 1e-10;  // likewise, aimed at where the positions are the unknowns
 
 void check_targets(const Net& net, const VecX& target, const ForceDensityOptions& options) {
@@ -181,7 +182,8 @@ ForceDensityResult find_tensions(const Net& net, const VecX& target, const Surfa
     result.method = chosen.method;
     // Where the positions are not determined or Newton's method strays, the published method has the last
     // word.
-    if (result.converged || options.method != TensionMethod::automatic) return result;
+    const bool too_large = static_cast<int>(net.branches.size()) > most_by_densities;
+    if (result.converged || options.method != TensionMethod::automatic || too_large) return result;
   }
   return search_force_densities(system, target, options, progress);
 }
