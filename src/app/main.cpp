@@ -5,8 +5,6 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
-#include <new>
-#include <stdexcept>
 #include <thread>
 
 #include <CLI/CLI.hpp>
@@ -14,9 +12,11 @@
 
 #include <tautline/core/error.hpp>
 #include <tautline/core/interrupt.hpp>
+#include <tautline/core/out_of_memory.hpp>
 #include <tautline/deck/deck.hpp>
 #include <tautline/la/session.hpp>
 #include <tautline/output/report.hpp>
+#include <tautline/output/run_directory.hpp>
 #include <tautline/steps/parameter_study.hpp>
 #include <tautline/steps/run.hpp>
 #include <tautline/steps/version.hpp>
@@ -67,6 +67,17 @@ int study_parameters(const Request& request) {
       steps::study_parameters(wanted, {directory_of(request, "_study"), !request.no_pictures, ""}, progress));
 }
 
+int report(const Request& request) {
+  const std::string& directory = request.directories.front();
+  output::RunDirectory files(directory);
+  if (std::filesystem::exists(directory + "/results.json")) {  // else nothing is written there
+    files.open(true);
+    for (const char* name : {"report.html", "comparison.html"}) files.path(name);
+  }
+  std::cout << output::write_report(request.directories) << '\n';
+  return 0;
+}
+
 int check(const Request& request) {
   const std::string text = steps::check(deck::read_deck(request.deck, request.overrides));
   if (la::rank() == 0) std::cout << text;
@@ -83,13 +94,6 @@ int report_failure(const std::string& message, ExitCode code) {
   return static_cast<int>(code);
 }
 
-int out_of_memory() {
-  return report_failure(
-      "error: there is not enough memory. Ask for fewer elements (subdivisions, rings, modes), or give the "
-      "process more (ulimit -v, a larger machine, more ranks)",
-      ExitCode::library_failed);
-}
-
 int guarded(const std::function<int()>& action) {
   try {
     return action();
@@ -99,11 +103,9 @@ int guarded(const std::function<int()>& action) {
     return report_failure(fmt::format("error: {}", error.what()), ExitCode::impossible_model);
   } catch (const LibraryError& error) {
     return report_failure(fmt::format("error: {}", error.what()), ExitCode::library_failed);
-  } catch (const std::bad_alloc&) {
-    return out_of_memory();
-  } catch (const std::length_error&) {
-    return out_of_memory();
   } catch (const std::exception& error) {
+    if (is_out_of_memory(error))
+      return report_failure(fmt::format("error: {}", text_of(error)), ExitCode::library_failed);
     return report_failure(
         fmt::format("internal error: {}\nThis is a bug, please report it with the deck.", error.what()),
         ExitCode::bug);
@@ -126,7 +128,7 @@ int in_session(const std::function<int()>& action) {
 int any_study(const Request& request) {
   if (request.over.empty()) return in_session([&] { return study(request); });
   if (la::launched_by_mpirun()) return in_session([&] { return study_parameters(request); });
-  watch_for_interrupt();
+  watch_for_interrupt(1.9);  // longer than its runs
   return guarded([&] { return study_parameters(request); });
 }
 
@@ -239,10 +241,7 @@ int command(int argc, char** argv) {
       app.add_subcommand("report", "(re)build report.html; several directories: side by side");
   report_command->add_option("directories", request.directories, "result directories")->required();
   report_command->footer("Example: tautline report results/perimeter_truss_12m");
-  on(report_command, [](const Request& r) {
-    std::cout << output::write_report(r.directories) << '\n';
-    return 0;
-  });
+  on(report_command, report);
 
   auto* compare_command =
       app.add_subcommand("compare", "compare surface error, tensions, frequencies and time of runs");

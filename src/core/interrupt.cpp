@@ -4,54 +4,62 @@
 #include <cstdlib>
 #include <cstring>
 
+#include <sys/time.h>
 #include <unistd.h>
 
 namespace tautline {
 
 namespace {
 
-constexpr unsigned patience = 10;  // [s] until a process that does not look at the flag is ended
+constexpr int interrupted = 130;  // ExitCode::interrupted
+constexpr int signals[] = {SIGINT, SIGTERM, SIGHUP};
 
-volatile std::sig_atomic_t requested = 0, seen = 0, waited = 0;
+volatile std::sig_atomic_t requested = 0;
+itimerval patience{};
 
 void say(const char* text) {
   [[maybe_unused]] const auto written = write(STDERR_FILENO, text, std::strlen(text));
 }
 
-void on_signal(int signal) {
-  if (requested != 0) std::_Exit(128 + signal);
-  requested = 1;
-  alarm(1);
+void end_at_once(int) {
+  std::_Exit(interrupted);
 }
 
-/// The work in hand is one long piece, e.g. the factors of a large matrix. results.json and the checkpoints
-/// on the disk are whole at any time.
+void on_signal(int) {
+  if (requested != 0) std::_Exit(interrupted);
+  requested = 1;
+  setitimer(ITIMER_REAL, &patience, nullptr);
+}
+
+/// The work in hand is one long piece, e.g. the factors of a large matrix. Files are written beside their
+/// names and renamed, so that they are whole at any time.
 void on_alarm(int) {
-  if (seen != 0) return;
-  if (waited != 0) {
-    say("\nstopped without the tables of the last state; results.json and the checkpoints are whole\n");
-    std::_Exit(130);
-  }
-  waited = 1;
-  say("\nstopping as soon as the piece of work in hand is done; once more: at once\n");
-  alarm(patience - 1);
+  say("\nstopped within a long piece of work, without the tables of the last state; results.json and the "
+      "checkpoints are whole\n");
+  std::_Exit(interrupted);
+}
+
+/// A hang-up that is ignored from the start (nohup) stays so.
+void handle_all(void (*handler)(int)) {
+  for (const int signal : signals)
+    if (std::signal(signal, handler) == SIG_IGN && signal == SIGHUP) std::signal(signal, SIG_IGN);
 }
 
 }  // namespace
 
-void watch_for_interrupt() {
+void watch_for_interrupt(double seconds) {
+  patience.it_value.tv_sec = static_cast<time_t>(seconds);
+  patience.it_value.tv_usec =
+      static_cast<suseconds_t>(1e6 * (seconds - static_cast<double>(patience.it_value.tv_sec)));
   std::signal(SIGALRM, on_alarm);
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  handle_all(on_signal);
 }
 
 void end_at_interrupt() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  handle_all(end_at_once);
 }
 
 bool interrupt_requested() noexcept {
-  if (requested != 0) seen = 1;
   return requested != 0;
 }
 

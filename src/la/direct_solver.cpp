@@ -5,13 +5,17 @@
 #include <fmt/format.h>
 #include <petscksp.h>
 
-#include <tautline/core/error.hpp>
+#include <tautline/core/interrupt.hpp>
+#include <tautline/core/out_of_memory.hpp>
+#include <tautline/la/session.hpp>
 
 #include "la/check.hpp"
 
 namespace tautline::la {
 
 namespace {
+
+constexpr int usual_work_space = 60;  // on top of what MUMPS foresees [%]
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -37,28 +41,54 @@ void touch(::Mat matrix) {
   check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd");
 }
 
+bool is_singular(int code) {
+  return code == -6 || code == -10;
+}
+
+/// Whether MUMPS asks for more work space than it foresaw.
+bool wants_more(int code) {
+  return code == -8 || code == -9 || code == -14 || code == -15 || code == -17 || code == -20;
+}
+
+bool lacks_memory(int code) {
+  return code == -5 || code == -7 || code == -13 || code == -19 || code == -22 || code == -37;
+}
+
 std::string explain_mumps(int code, int detail) {
-  switch (code) {
-    case -5:
-    case -7:
-    case -13:
-    case -19:
-      return fmt::format(
-          "MUMPS ran out of memory (INFOG(1) = {}, {}): use a machine with more, or more ranks on a cluster",
-          code, detail);
-    case -6:
-    case -10:
-      return fmt::format("the matrix is singular (MUMPS INFOG(1) = {}, pivots found {})", code, detail);
-    case -8:
-    case -9:
-      return fmt::format(
-          "MUMPS's workspace was too small even after several enlargements (INFOG(1) = {}, {})", code,
-          detail);
-    default:
-      return fmt::format(
-          "MUMPS failed with INFOG(1) = {}, INFOG(2) = {}; see its users' guide, section on error "
-          "diagnostics",
-          code, detail);
+  if (is_singular(code))
+    return fmt::format("the matrix is singular (MUMPS INFOG(1) = {}, pivots found {})", code, detail);
+  return fmt::format(
+      "MUMPS failed with INFOG(1) = {}, INFOG(2) = {}; see its users' guide, section on error diagnostics",
+      code, detail);
+}
+
+[[noreturn]] void refuse_mumps(int code, int detail) {
+  if (lacks_memory(code)) throw OutOfMemory(fmt::format("MUMPS, INFOG(1) = {}, {}", code, detail));
+  if (wants_more(code))
+    throw OutOfMemory(fmt::format(
+        "MUMPS, whose work space was too small even after several enlargements, INFOG(1) = {}, {}", code,
+        detail));
+  throw LibraryError(explain_mumps(code, detail));
+}
+
+/// Where the work space that MUMPS foresaw is too small it gets more; where there is no memory for it, once
+/// less. @return INFOG(1)
+int factor_with_room(_p_KSP* ksp, const SymmetricMatrix& matrix) {
+  constexpr int most = 2000, little = 10;  // part of what MUMPS foresees, on top of it [%]
+  bool spared = false;
+  for (int part = usual_work_space;;) {
+    check(KSPSetUp(ksp), "KSPSetUp");
+    const int code = infog(ksp, 1);
+    if (wants_more(code) && part <= most && !spared) {
+      part *= 2;
+    } else if (lacks_memory(code) && !spared) {
+      part = little;
+      spared = true;
+    } else {
+      return code;
+    }
+    check(MatMumpsSetIcntl(factors_of(ksp), 14, part), "MatMumpsSetIcntl");
+    touch(matrix.handle());
   }
 }
 
@@ -86,7 +116,7 @@ void DirectSolver::set_options() {
   ::Mat factors = factors_of(ksp_);
   check(MatMumpsSetIcntl(factors, 7, 2), "MatMumpsSetIcntl");
   check(MatMumpsSetIcntl(factors, 13, 1), "MatMumpsSetIcntl");
-  check(MatMumpsSetIcntl(factors, 14, 60), "MatMumpsSetIcntl");
+  check(MatMumpsSetIcntl(factors, 14, usual_work_space), "MatMumpsSetIcntl");
   check(MatMumpsSetIcntl(factors, 24, 1), "MatMumpsSetIcntl");
   check(MatMumpsSetIcntl(factors, 28, 1), "MatMumpsSetIcntl");
   check(MatMumpsSetCntl(factors, 3, 1e-14), "MatMumpsSetCntl");
@@ -94,6 +124,7 @@ void DirectSolver::set_options() {
 }
 
 bool DirectSolver::factor(const SymmetricMatrix& matrix) {
+  if (true_on_any_rank(interrupt_requested())) throw Interrupted();
   const auto start = std::chrono::steady_clock::now();
   if (options_set_) {  // PETSc makes new factors for another matrix, without the options
     ::Mat last = nullptr;
@@ -106,20 +137,13 @@ bool DirectSolver::factor(const SymmetricMatrix& matrix) {
   check(KSPSetOperators(ksp_, matrix.handle(), matrix.handle()), "KSPSetOperators");
   if (!options_set_) set_options();
   failure_.clear();
-  int code = 0;
-  for (int memory = 120;; memory *= 2) {
-    check(KSPSetUp(ksp_), "KSPSetUp");
-    code = infog(ksp_, 1);
-    if ((code != -8 && code != -9) || memory > 2000) break;
-    check(MatMumpsSetIcntl(factors_of(ksp_), 14, memory), "MatMumpsSetIcntl");
-    touch(matrix.handle());
-  }
+  const int code = factor_with_room(ksp_, matrix);
   timings_.factorisation += seconds_since(start);
   ++timings_.factorisations;
   if (code >= 0) return true;
+  if (!is_singular(code)) refuse_mumps(code, infog(ksp_, 2));
   failure_ = explain_mumps(code, infog(ksp_, 2));
-  if (code == -6 || code == -10) return false;
-  throw LibraryError(failure_);
+  return false;
 }
 
 Inertia DirectSolver::inertia() const {

@@ -8,7 +8,7 @@
 #include <slepcsys.h>
 #include <sys/resource.h>
 
-#include <tautline/core/error.hpp>
+#include <tautline/core/out_of_memory.hpp>
 
 #include "la/check.hpp"
 
@@ -18,6 +18,7 @@ void check(PetscErrorCode code, const char* what) {
   if (code == 0) return;
   const char* text = nullptr;
   char* specific = nullptr;
+  if (code == PETSC_ERR_MEM) throw OutOfMemory(fmt::format("PETSc, {}", what));
   PetscErrorMessage(code, &text, &specific);
   throw LibraryError(fmt::format("PETSc failed in {} with code {}: {} {}", what, static_cast<int>(code),
                                  text != nullptr ? text : "", specific != nullptr ? specific : ""));
@@ -40,6 +41,7 @@ bool takes_petsc_options() {
 
 Session::Session() {
   setenv("OPENBLAS_NUM_THREADS", "1", 0);
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);  // without mpirun no daemon: a third of a second a run
   char program[] = "tautline", skip[] = "-skip_petscrc";  // obeyed as an argument only
   char* list[] = {program, skip, nullptr};
   char** arguments = list;
@@ -98,17 +100,21 @@ bool true_on_any_rank(bool value) {
 
 void on_root(const std::function<void()>& action) {
   std::string failure;
+  int head[] = {0, 0};  // length of the failure's text, and whether it is for want of memory
   if (rank() == 0) {
     try {
       action();
     } catch (const std::exception& error) {
       failure = error.what();
       if (failure.empty()) failure = "unknown failure";
+      head[1] = is_out_of_memory(error) ? 1 : 0;
     }
+    head[0] = static_cast<int>(failure.size());
   }
-  int length = static_cast<int>(failure.size());
-  MPI_Bcast(&length, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  MPI_Bcast(head, 2, MPI_INT, 0, PETSC_COMM_WORLD);
+  const auto [length, for_memory] = head;
   if (length == 0) return;
+  if (for_memory != 0) throw OutOfMemory();
   failure.resize(static_cast<std::size_t>(length));
   MPI_Bcast(failure.data(), length, MPI_CHAR, 0, PETSC_COMM_WORLD);
   throw LibraryError(failure);

@@ -74,6 +74,10 @@ void write_text(const std::string& path, const std::string& text) {
   detail::write_file(path, text);
 }
 
+void write_durably(const std::string& path, std::string_view bytes) {
+  detail::write_file(path, bytes, true);
+}
+
 void prepare_directory(const std::string& directory) {
   std::error_code error;
   if (std::filesystem::exists(directory, error) && !std::filesystem::is_directory(directory, error))

@@ -24,6 +24,7 @@ namespace {
 
 constexpr const char* lock_file = ".tautline_lock";
 constexpr const char* list_file = ".tautline_files";
+constexpr const char* probe_file = ".tautline_probe_";  // as prepare_directory names it
 
 /// Directories below that of a run, and how the names of what is written there end.
 struct Below {
@@ -65,9 +66,24 @@ bool ends_with(const std::string& text, const std::string& ending) {
 }
 
 bool is_of_a_run(const std::string& name, const Below& where) {
-  return std::any_of(where.endings.begin(), where.endings.end(), [&](const char* ending) {
-    return ends_with(name, ending) || ends_with(name, std::string(ending) + ".tmp");
-  });
+  return std::any_of(where.endings.begin(), where.endings.end(),
+                     [&](const char* ending) { return ends_with(name, ending); });
+}
+
+/// NAME of NAME.<process>.tmp, under which a file is written until it is whole; nothing of another name.
+std::string name_without_process(const std::string& name) {
+  const std::string ending = ".tmp", digits = "0123456789";
+  if (!ends_with(name, ending)) return {};
+  const auto dot = name.find_last_not_of(digits, name.size() - ending.size() - 1);
+  if (dot == std::string::npos || name[dot] != '.' || dot + 1 + ending.size() == name.size()) return {};
+  return name.substr(0, dot);
+}
+
+template <class Choice>
+void remove_files(const fs::path& folder, const Choice& is_chosen) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (is_chosen(entry.path().filename().string())) remove_file(entry.path());
 }
 
 }  // namespace
@@ -92,16 +108,30 @@ void RunDirectory::lock() {
   if (ftruncate(lock_, 0) == 0) put(lock_, fmt::format("process {} on {}\n", getpid(), host.data()));
 }
 
-void RunDirectory::clear() const {
+std::set<std::string> RunDirectory::listed() const {
+  std::set<std::string> names;
   std::ifstream list(directory_ + "/" + list_file);
-  if (!list) return;
   for (std::string name; std::getline(list, name);)
-    if (is_plain_name(name)) remove_file(fs::path(directory_) / name);
+    if (is_plain_name(name)) names.insert(name);
+  return names;
+}
+
+void RunDirectory::sweep() const {
+  const auto names = listed();
+  remove_files(directory_, [&](const std::string& name) {
+    return names.contains(name_without_process(name)) || name.starts_with(probe_file);
+  });
+  for (const auto& where : below)
+    remove_files(fs::path(directory_) / where.name,
+                 [&](const std::string& name) { return is_of_a_run(name_without_process(name), where); });
+}
+
+void RunDirectory::clear() const {
+  for (const auto& name : listed()) remove_file(fs::path(directory_) / name);
   for (const auto& where : below) {
     const fs::path folder = fs::path(directory_) / where.name;
+    remove_files(folder, [&](const std::string& name) { return is_of_a_run(name, where); });
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error))
-      if (is_of_a_run(entry.path().filename().string(), where)) remove_file(entry.path());
     fs::remove(folder, error);  // if it is empty now
   }
 }
@@ -113,7 +143,10 @@ void RunDirectory::open(bool goes_on) {
     if (fs::is_symlink(fs::path(directory_) / where.name))
       throw LibraryError(fmt::format("{}/{} is a link: results are written to no other place than {}",
                                      directory_, where.name, directory_));
-  if (!goes_on) clear();
+  if (fs::exists(fs::path(directory_) / list_file)) {
+    sweep();
+    if (!goes_on) clear();
+  }
   list_ = open_own(directory_ + "/" + list_file, O_WRONLY | O_APPEND | (goes_on ? 0 : O_TRUNC));
 }
 

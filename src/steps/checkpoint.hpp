@@ -48,6 +48,8 @@ class Checkpoints {
   void begin_at(const Checkpoint& checkpoint);
   /// The checkpoint after the steps done so far, to which points are put.
   const Checkpoint& latest() const { return latest_; }
+  /// Time spent on writing [s].
+  double seconds() const { return seconds_; }
 
  private:
   void write(const Checkpoint& checkpoint, const std::string& name);
@@ -56,6 +58,7 @@ class Checkpoints {
   std::string directory_;
   Checkpoint latest_;
   double next_ = 0;  // when the next point may be written [s]
+  double seconds_ = 0;
 };
 
 /// @brief The checkpoint in a directory of results that goes farthest along the steps of this deck, or

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <tautline/core/error.hpp>
 #include <tautline/model/response.hpp>
 
 #include "steps/balance.hpp"
@@ -59,6 +60,10 @@ void follow_parts(Context& context, const EquilibriumOptions& options, StageRunn
     for (const auto& stage : release.stages) parts.push_back({stage, {}});
     parts.back().loads = wanted;
   }
+  if (static_cast<std::size_t>(runner.first()) >= parts.size())
+    throw LibraryError(fmt::format(
+        "the checkpoint holds a point in stage {} of step \"{}\", which has {}: run without --from",
+        runner.first() + 1, context.step_name, parts.size()));
   for (std::size_t i = static_cast<std::size_t>(runner.first()); i < parts.size(); ++i) {
     if (runner.run(parts[i].stage, parts[i].loads, i + 1 == parts.size())) continue;
     fail(runner, false,

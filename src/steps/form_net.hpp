@@ -24,7 +24,10 @@ struct FormNet {
   std::vector<formfinding::FilmFacet> film;  ///< the cloth
   std::unique_ptr<formfinding::Surface> own_surface;
   const formfinding::Surface* surface = nullptr;  ///< the reflector's, or own_surface; or null
-  VecX force_density;  ///< of each branch, in place of the drawn one [N/m]; empty: as drawn
+  VecX drawn_tension;      ///< of each branch, whatever becomes of the structure meanwhile [N]
+  VecX drawn_length;       ///< of each branch [m]
+  VecX unstressed_length;  ///< of each branch as drawn [m]
+  VecX force_density;      ///< of each branch, in place of the drawn one [N/m]; empty: as drawn
 
   double stiffness(const model::Model& structure, std::size_t branch) const;
   bool is_bar(const model::Model& structure, int branch) const;

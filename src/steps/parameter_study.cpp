@@ -13,6 +13,7 @@
 #include <tautline/la/session.hpp>
 #include <tautline/output/pointer.hpp>
 #include <tautline/output/results.hpp>
+#include <tautline/output/run_directory.hpp>
 
 #include "steps/context.hpp"
 #include "steps/processes.hpp"
@@ -158,7 +159,7 @@ void run_beside(const ParameterStudy& study, const std::vector<std::vector<std::
     if (!settings.pictures) command.words.emplace_back("--no-pictures");
     for (const auto& list : {study.overrides, sets[i]})
       for (const auto& set : list) command.words.insert(command.words.end(), {"--set", set});
-    std::filesystem::remove_all(directory);  // results of an earlier study are not those of a run that fails
+    output::RunDirectory(directory).open(false);  // what an earlier study left is not of a run that fails
     commands.push_back(std::move(command));
   }
   progress.say(fmt::format("study: {} runs, {} at a time", commands.size(), study.jobs));
@@ -197,19 +198,20 @@ ExitCode verdict(const Json& rows) {
   return code;
 }
 
-void report(ParameterStudy study, Json rows, const RunSettings& settings, Progress& progress) {
+void report(ParameterStudy study, Json rows, const RunSettings& settings, output::RunDirectory& files,
+            Progress& progress) {
   gather(study, rows, progress);
   Json over = Json::object(), quantities = Json::object();
   for (const auto& range : study.over) over[range.name] = range.values;
   for (const auto& quantity : study.quantities) quantities[quantity.label] = quantity.path;
-  output::write_results(settings.directory + "/study.json", {{"format", "tautline-study"},
-                                                             {"version", 1},
-                                                             {"deck", study.deck},
-                                                             {"over", over},
-                                                             {"quantities", quantities},
-                                                             {"rows", rows}});
-  output::write_text(settings.directory + "/study.csv", study_csv(study, rows));
-  if (settings.pictures) draw_study(study, rows, settings.directory, progress);
+  output::write_results(files.path("study.json"), {{"format", "tautline-study"},
+                                                   {"version", 1},
+                                                   {"deck", study.deck},
+                                                   {"over", over},
+                                                   {"quantities", quantities},
+                                                   {"rows", rows}});
+  output::write_text(files.path("study.csv"), study_csv(study, rows));
+  if (settings.pictures) draw_study(study, rows, files, progress);
   std::cout << study_text(study, rows) << std::flush;
 }
 
@@ -257,14 +259,15 @@ ExitCode study_parameters(const ParameterStudy& study, const RunSettings& settin
   Json rows = Json::array();
   for (const auto& set : sets) rows.push_back(start_row(study, set, settings.directory));
   const bool on_ranks = la::started();
+  output::RunDirectory files(settings.directory);
   if (!on_ranks) {
-    output::prepare_directory(settings.directory);
+    files.open(false);
     run_beside(study, sets, rows, settings, progress);
-    report(study, rows, settings, progress);
+    report(study, rows, settings, files, progress);
   } else {
-    la::on_root([&] { output::prepare_directory(settings.directory); });
+    la::on_root([&] { files.open(false); });
     run_here(study, sets, rows, settings, progress);
-    la::on_root([&] { report(study, rows, settings, progress); });
+    la::on_root([&] { report(study, rows, settings, files, progress); });
   }
   return verdict(rows);
 }

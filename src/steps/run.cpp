@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <tautline/core/interrupt.hpp>
+#include <tautline/core/out_of_memory.hpp>
 #include <tautline/la/session.hpp>
 #include <tautline/output/report.hpp>
 #include <tautline/output/results.hpp>
@@ -75,6 +76,13 @@ Json start_results(const deck::Deck& deck) {
   return results;
 }
 
+/// How a run stands that an exception ends: one that was stopped, by the user or for want of memory, is not
+/// one whose solvers found nothing.
+const char* status_after(const std::exception& error) {
+  const bool stopped = dynamic_cast<const Interrupted*>(&error) != nullptr || is_out_of_memory(error);
+  return stopped ? "interrupted" : "not_converged";
+}
+
 /// Whether a step makes what the steps behind it stand on, so that it is done anew when a run is taken up.
 bool builds(const Step& step) {
   return std::holds_alternative<FormFindingOptions>(step.options) ||
@@ -96,6 +104,23 @@ void judge_balance(Context& context, const Step& step, Json& entry) {
   entry["reason"] = reason + ". Try a smaller solver.force_tolerance";
 }
 
+/// Leaves word of the step that is running, for whoever finds the results of a run that was killed in it.
+void announce(Context& context, Json entry) {
+  entry["status"] = "interrupted";
+  entry["reason"] = "the run ended within this step";
+  auto& steps = context.results["steps"];
+  steps.push_back(std::move(entry));
+  context.save();
+  steps.erase(steps.size() - 1);
+}
+
+/// Leaves word of the step that failed.
+void record_failure(Context& context, Json entry, const std::exception& error) {
+  entry["status"] = status_after(error);
+  entry["reason"] = text_of(error);
+  context.results["steps"].push_back(std::move(entry));
+}
+
 /// Runs one step and appends its entry. @return its status
 std::string run_and_record(Context& context, const Step& step) {
   context.step_name = step.name;
@@ -104,12 +129,11 @@ std::string run_and_record(Context& context, const Step& step) {
   const auto start = Clock::now();
   const Counters before = Counters::of(context);
   Json entry{{"name", step.name}, {"kind", step.kind}};
+  announce(context, entry);
   try {
     entry.update(std::visit([&](const auto& options) { return run_step(context, options); }, step.options));
-  } catch (const std::exception& error) {  // leaves word of the step that failed
-    entry["status"] = "not_converged";
-    entry["reason"] = error.what();
-    context.results["steps"].push_back(std::move(entry));
+  } catch (const std::exception& error) {
+    record_failure(context, std::move(entry), error);
     throw;
   }
   if (!builds(step) && context.has_system()) judge_balance(context, step, entry);
@@ -184,6 +208,7 @@ void finish(Context& context, const RunSettings& settings, Clock::time_point sta
   la::on_root([&] { write_tables(context, reactions); });
   context.note_model();
   context.results["wall_seconds"] = seconds_since(start);
+  context.results["checkpoint_seconds"] = context.checkpoints.seconds();
   context.save();
   la::on_root([&] {
     if (context.deck.output.report) output::write_report({settings.directory});
@@ -225,9 +250,10 @@ ExitCode run(const deck::Deck& deck, const RunSettings& settings, Progress& prog
     status = "interrupted";
     context.results["reason"] = error.what();
     code = ExitCode::interrupted;
+    context.save();  // the tables may take longer than the user waits
   } catch (const std::exception& error) {
-    context.results["status"] = "not_converged";
-    context.results["reason"] = error.what();
+    context.results["status"] = status_after(error);
+    context.results["reason"] = text_of(error);
     context.save();
     throw;
   }

@@ -110,12 +110,12 @@ std::string text_of(const Json& study) {
   return text;
 }
 
-void write_study(const std::string& directory, const Json& study, bool pictures, Progress& progress) {
-  output::write_results(directory + "/study.json", study);
-  if (!study["rows"].empty()) write_csv(directory + "/study.csv", study["rows"]);
+void write_study(output::RunDirectory& files, const Json& study, bool pictures, Progress& progress) {
+  output::write_results(files.path("study.json"), study);
+  if (!study["rows"].empty()) write_csv(files.path("study.csv"), study["rows"]);
   if (!pictures || study["rows"].size() < 2) return;
   try {
-    output::draw(chart_of(study["rows"]), directory + "/study.png");
+    output::draw(chart_of(study["rows"]), files.path("study.png"));
   } catch (const LibraryError& error) {
     progress.say(fmt::format("warning: no picture: {}", error.what()));
   }
@@ -130,6 +130,8 @@ ExitCode study(const std::string& deck_path, const std::vector<std::string>& ove
              {"deck", deck_path},
              {"rows", Json::array()},
              {"failed", Json::array()}};
+  output::RunDirectory files(settings.directory);
+  la::on_root([&] { files.open(false); });
   ExitCode code = ExitCode::done;
   for (const int s : std::set<int>(subdivisions.begin(), subdivisions.end())) {
     progress.say(fmt::format("study: {} parts of a facet side", s));
@@ -161,7 +163,7 @@ ExitCode study(const std::string& deck_path, const std::vector<std::string>& ove
   }
   la::on_root([&] {
     for (const char* measure : measures) study["extrapolation"][measure] = extrapolate(study, measure);
-    write_study(settings.directory, study, settings.pictures, progress);
+    write_study(files, study, settings.pictures, progress);
     fmt::print("{}", text_of(study));
   });
   return code;

@@ -121,13 +121,13 @@ std::string study_csv(const ParameterStudy& study, const Json& rows) {
   return text;
 }
 
-void draw_study(const ParameterStudy& study, const Json& rows, const std::string& directory,
+void draw_study(const ParameterStudy& study, const Json& rows, output::RunDirectory& files,
                 Progress& progress) {
   const auto draw = [&](const std::string& title, const std::string& x, const StudyQuantity& y,
                         const std::string& file, const auto& abscissa) {
     output::Chart chart{title, x, short_label(y.label), curves_of(study, rows, y, abscissa)};
     if (chart.curves.empty()) return;
-    output::draw(chart, fmt::format("{}/study_{}.png", directory, file));
+    output::draw(chart, files.path(fmt::format("study_{}.png", file)));
   };
   try {
     const std::string& first = study.over.front().name;

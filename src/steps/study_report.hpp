@@ -5,6 +5,7 @@
 #include <string>
 
 #include <tautline/core/progress.hpp>
+#include <tautline/output/run_directory.hpp>
 #include <tautline/steps/parameter_study.hpp>
 
 #include "steps/context.hpp"
@@ -18,7 +19,7 @@ std::string study_csv(const ParameterStudy& study, const Json& rows);
 
 /// study_<label>.png against the first parameter; and, of two or more quantities, study_trade.png: the first
 /// against the second.
-void draw_study(const ParameterStudy& study, const Json& rows, const std::string& directory,
+void draw_study(const ParameterStudy& study, const Json& rows, output::RunDirectory& files,
                 Progress& progress);
 
 }  // namespace tautline::steps

@@ -4,11 +4,11 @@
 
 namespace tautline {
 
-/// From now on SIGINT and SIGTERM only set the flag. Work that does not look at it within a second is told
-/// of, after ten seconds the process ends; a second signal ends it at once.
-void watch_for_interrupt();
+/// From now on SIGINT, SIGTERM and SIGHUP (unless nohup has it ignored) only set the flag. A process that has
+/// not come to its end `patience` seconds later is ended, as by a second signal at once: exit code 130.
+void watch_for_interrupt(double patience = 1.5);
 
-/// SIGINT and SIGTERM end the process, as where nothing is to be saved.
+/// These signals end the process at once, as where nothing is to be saved: exit code 130.
 void end_at_interrupt();
 
 /// Whether the user asked to stop.

@@ -3,6 +3,7 @@
 /// results.json: written after every step, so that an interrupted run leaves a valid file.
 
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -16,6 +17,10 @@ nlohmann::ordered_json read_results(const std::string& path);
 
 /// Writes a text likewise. @throws LibraryError with the reason
 void write_text(const std::string& path, const std::string& text);
+
+/// Writes bytes likewise, and returns when they and their name are on the disk.
+/// @throws LibraryError with the reason; what was at `path` before is still there
+void write_durably(const std::string& path, std::string_view bytes);
 
 /// Creates `directory` with its parents and proves that it can be written to. @throws LibraryError naming it
 /// and why

@@ -2,6 +2,7 @@
 /// @file
 /// The directory that a run writes its results to.
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ class RunDirectory {
 
  private:
   void lock();
+  std::set<std::string> listed() const;  ///< names of the files of earlier runs
+  void sweep() const;                    ///< removes half-written files of runs that were killed
   void clear() const;
 
   std::string directory_;

@@ -8,8 +8,9 @@
 namespace tautline::output::detail {
 
 /// Writes `text` to a temporary file beside `path` and renames it: a reader never sees half a file.
-/// @throws LibraryError naming `path` and the reason
-void write_file(const std::string& path, std::string_view text);
+/// @param durable file and name are on the disk when this returns, also if the machine then loses its power
+/// @throws LibraryError naming `path` and the reason; what was at `path` before is still there
+void write_file(const std::string& path, std::string_view text, bool durable = false);
 
 /// @throws LibraryError naming `path` and the reason
 std::string read_file(const std::string& path);
