@@ -15,7 +15,6 @@
 #include <map>
 #include <numeric>
 #include <optional>
-#include <random>
 #include <tautline/core/error.hpp>
 #include <tautline/formfinding/node_error.hpp>
 #include <utility>
@@ -30,10 +29,7 @@ constexpr int many_branches = 2000;  // from here on the positions are the unkno
 constexpr double balance_limit =
     1e-9;  // of the largest force out of balance, relative to the largest tension
 constexpr int most_compromising =
-    20000;                           // branches for which positions and force densities are sought together
-constexpr double nearly_met = 1e-2;  // scaled deviation below which other starts are tried
-constexpr unsigned more_starts = 6;
-constexpr double disturbance = 0.1;   // of the mean length of branches
+    20000;                            // branches for which positions and force densities are sought together
 constexpr double push_limit = 1e-7;   // of the largest tension, below which a push is rounding
 constexpr double rank_limit = 1e-12;  // singular values below this part of the largest count as zero
 
@@ -250,8 +246,6 @@ class FormSearch {
   /// @return whether there is an answer
   bool compromise(const NetState* end);
   CompromiseSettings compromise_settings() const;
-  /// Free nodes moved at random, the way they can.
-  NetState disturbed(const NetState& from, unsigned seed) const;
   std::optional<CompromiseResult> best_compromise(const NetState* end) const;
   bool pushes(const ConstrainedResult& found) const;
 
@@ -429,28 +423,13 @@ CompromiseSettings FormSearch::compromise_settings() const {
   return settings;
 }
 
-NetState FormSearch::disturbed(const NetState& from, unsigned seed) const {
-  std::mt19937 random(seed);
-  const double largest = disturbance * from.length.mean();
-  Coordinates nodes = from.nodes;
-  for (int i = 0; i < system_.n_free(); ++i) {
-    const auto ways = system_.directions(from, i);
-    for (int k = 0; k < ways.count; ++k) {
-      const double part = 2.0 * static_cast<double>(random()) / std::mt19937::max() - 1;
-      nodes.row(system_.free_nodes()[i]) += largest * part * ways.motion.col(k).transpose();
-    }
-  }
-  return system_.state(from.force_density, std::move(nodes));
-}
-
 std::optional<CompromiseResult> FormSearch::best_compromise(const NetState* end) const {
-  CompromiseSettings settings = compromise_settings();
+  const CompromiseSettings settings = compromise_settings();
   std::optional<CompromiseResult> best;
-  bool only_met = false;
   const auto search_from = [&](const NetState& start) {
     CompromiseResult found = find_compromise(
         system_, [&](const NetState& state) { return rows(state); }, start, settings);
-    const bool better = !best || found.met || (!only_met && found.squares < (1 - 1e-9) * best->squares);
+    const bool better = !best || found.met || found.squares < (1 - 1e-9) * best->squares;
     if (found.in_balance && better) best = std::move(found);
   };
   const auto attempt = [&](const auto& make_start) {
@@ -463,14 +442,6 @@ std::optional<CompromiseResult> FormSearch::best_compromise(const NetState* end)
   if (end != nullptr) attempt([&]() -> const NetState& { return *end; });
   const NetState given = system_.state(given_density(problem_, start_), given_nodes(problem_.net));
   attempt([&] { return given; });
-  // A miss so small is often that of a minimum beside a net that meets all. A compromise stays near the given
-  // net; one that meets all is taken from wherever it is.
-  only_met = true;
-  settings.max_iterations /= 2;
-  for (unsigned seed = 1; seed <= more_starts && best && !best->met &&
-                          best->rows.missing().lpNorm<Eigen::Infinity>() < nearly_met;
-       ++seed)
-    attempt([&] { return disturbed(given, seed); });
   return best;
 }
 
