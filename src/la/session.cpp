@@ -32,7 +32,8 @@ void check(PetscErrorCode code, const char* what) {
   const char* text = nullptr;
   char* specific = nullptr;
   PetscErrorMessage(code, &text, &specific);
-  if (lacks_memory(code, specific != nullptr ? specific : "")) throw OutOfMemory(fmt::format("PETSc, {}", what));
+  if (lacks_memory(code, specific != nullptr ? specific : ""))
+    throw OutOfMemory(fmt::format("PETSc, {}", what));
   throw LibraryError(fmt::format("PETSc failed in {} with code {}: {} {}", what, static_cast<int>(code),
                                  text != nullptr ? text : "", specific != nullptr ? specific : ""));
 }
@@ -54,7 +55,7 @@ bool takes_petsc_options() {
 
 Session::Session() {
   setenv("OPENBLAS_NUM_THREADS", "1", 0);
-  setenv("PATH", "/usr/local/bin:/usr/bin:/bin", 0);  // OpenMPI starts a helper by its name
+  setenv("PATH", "/usr/local/bin:/usr/bin:/bin", 0);      // OpenMPI starts a helper by its name
   char program[] = "tautline", skip[] = "-skip_petscrc";  // obeyed as an argument only
   char* list[] = {program, skip, nullptr};
   char** arguments = list;
