@@ -24,7 +24,9 @@ usage: ./bootstrap.sh run DECK [options of `tautline run`]   install, build, run
        ./bootstrap.sh build                                  install and build only
 
 Leaves the program at build/release/tautline. Calls after the first one go straight to work.
-TAUTLINE_SKIP_PACKAGES=1 in the environment leaves the packages alone (other systems, or libraries of your own).
+In the environment: TAUTLINE_SKIP_PACKAGES=1 leaves the packages alone (other systems, or libraries of your own);
+TAUTLINE_WARNINGS_AS_ERRORS=ON|OFF makes compiler warnings errors or not (OFF, or as the build directory has it);
+TAUTLINE_TEST_JOBS is how many tests run at a time.
 TEXT
 }
 
@@ -69,16 +71,18 @@ install_packages() {
 
 # Makes the build directory ready, once; ninja looks after it from then on. A clone that was moved starts afresh.
 configure() {
-  local fresh=()
+  local fresh=() options=(-DTAUTLINE_BUILD_TESTS=ON) warnings=${TAUTLINE_WARNINGS_AS_ERRORS:-}
+  [ -z "$warnings" ] || options+=("-DTAUTLINE_WARNINGS_AS_ERRORS=$warnings")
   if [ -f "$build/CMakeCache.txt" ]; then
     if ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$build/CMakeCache.txt"; then
       fresh=(--fresh)
-    elif [ -f "$build/build.ninja" ] && grep -qxF "TAUTLINE_BUILD_TESTS:BOOL=ON" "$build/CMakeCache.txt"; then
+    elif [ -f "$build/build.ninja" ] && grep -qxF "TAUTLINE_BUILD_TESTS:BOOL=ON" "$build/CMakeCache.txt" &&
+      grep -qx "TAUTLINE_WARNINGS_AS_ERRORS:BOOL=${warnings:-.*}" "$build/CMakeCache.txt"; then
       return
     fi
   fi
   say "configuring $build"
-  (cd "$root" && cmake --preset release "${fresh[@]}" -DTAUTLINE_BUILD_TESTS=ON) >&2
+  (cd "$root" && cmake --preset release "${fresh[@]}" "${options[@]}") >&2
 }
 
 # As many jobs as there are processors, if there is 1.2 GB of memory for each.
@@ -111,7 +115,7 @@ case ${1:-} in
     shift
     compile
     cd "$root"
-    exec ctest --preset release --no-tests=error -j "$(nproc)" "$@"
+    exec ctest --preset release --no-tests=error -j "${TAUTLINE_TEST_JOBS:-$(nproc)}" "$@"
     ;;
   -h | --help | help) usage ;;
   *) usage >&2; exit 2 ;;

@@ -11,7 +11,8 @@ namespace tautline::assembly {
 
 namespace {
 
-constexpr double longest_turn = 0.5;  // of a support in one linear step [rad]
+constexpr double longest_turn = 0.5;   // of a support in one linear step [rad]
+constexpr double farthest_turn = 1e6;  // that is followed in such steps [rad]
 
 Vec3 of_block(const std::vector<double>& unknowns, int block) {
   return Eigen::Map<const Vec3>(unknowns.data() + 3 * block);
@@ -35,6 +36,10 @@ bool System::predict(analysis::Workspace& workspace) {
     for (const auto& drive : drives_)
       if (drive.block >= 0 && drive.block == map_.rotation_block[node])
         turn = std::max(turn, drive.way.norm() * std::abs(way));
+  if (!(turn <= farthest_turn)) {
+    apply(from + way);
+    return false;
+  }
   const int parts = std::max(1, static_cast<int>(std::ceil(turn / longest_turn)));
   for (int part = 1; part <= parts; ++part) {
     apply(part == parts ? from + way : from + way * part / parts);

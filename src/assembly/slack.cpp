@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <tautline/core/text.hpp>
+#include <tautline/model/names.hpp>
 #include <tautline/model/response.hpp>
 
 namespace tautline::assembly {
@@ -101,6 +102,12 @@ class Stiffened {
     workspace_.tangent.add_diagonal(part, scale_);
     return workspace_.solver.factor(workspace_.tangent) && workspace_.solver.inertia().null == 0;
   }
+  /// What is added at full part, by unknown.
+  std::vector<double> scale() const {
+    std::vector<double> all;
+    scale_.gather(all);
+    return all;
+  }
   /// Force that the added stiffness takes when `load` acts.
   la::Vector taken(const la::Vector& load, double part) {
     la::Vector y = la::Vector::like(load);
@@ -118,13 +125,17 @@ class Stiffened {
 
 constexpr double some = 1e-8, less = 1e-11;  // of a node's stiffness when taut
 
-/// Whether what acts has a part in a motion without resistance: then the added stiffness takes the same
-/// force, however little it is; else a force in proportion to it.
-bool load_feels(System& system, Stiffened& stiffened, const std::vector<int>& nodes) {
+/// Dead forces that act on the nodes.
+la::Vector acting_on(const System& system, const std::vector<int>& nodes) {
   const auto acting = system.applied().force;
-  const la::Vector load = on_nodes(system, nodes, [&](int node, int block) -> Vec3 {
+  return on_nodes(system, nodes, [&](int node, int block) -> Vec3 {
     return system.kinematics().frame(block).transpose() * acting[static_cast<std::size_t>(node)];
   });
+}
+
+/// Whether a load has a part in a motion without resistance: then the added stiffness takes the same force,
+/// however little it is; else a force in proportion to it.
+bool load_feels(const System& system, Stiffened& stiffened, const la::Vector& load) {
   const double level = 10 * system.rounding().force;
   if (load.norm() <= level) return false;
   stiffened.factor(some);
@@ -189,12 +200,11 @@ std::string sentence(const System& system, const Slack& slack) {
   tell(model, model.cables, slack.cables, "cable", parts);
   for (const int node : slack.nodes) {
     if (places.size() == most) break;
-    const Vec3 at = model.nodes[static_cast<std::size_t>(node)];
-    places.push_back(fmt::format("({:.4g}, {:.4g}, {:.4g})", at.x(), at.y(), at.z()));
+    places.push_back(model::node_at(model, node));
   }
   return fmt::format(
-      "slack: {}, at the node{} drawn at {}{}. Nothing loads {} and nothing resists: where {} undetermined",
-      join(parts, ", ", parts.size()), slack.nodes.size() == 1 ? "" : "s", join(places, ", ", places.size()),
+      "slack: {}, about {}{}, as drawn. Nothing loads {} and nothing resists: where {} undetermined",
+      join(parts, ", ", parts.size()), join(places, ", ", places.size()),
       slack.nodes.size() > most ? fmt::format(" and {} more", slack.nodes.size() - most) : "",
       slack.nodes.size() == 1 ? "it" : "them", slack.nodes.size() == 1 ? "it is, is" : "they are, is");
 }
@@ -207,7 +217,7 @@ std::optional<Slack> find_slack(System& system, analysis::Workspace& workspace) 
   Stiffened stiffened(system, workspace, loose);
   Slack slack;
   const bool only_slack = stiffened.factor(some),
-             matters = !only_slack || load_feels(system, stiffened, loose);
+             matters = !only_slack || load_feels(system, stiffened, acting_on(system, loose));
   if (!matters) slack.nodes = moving(system, stiffened, loose);
   system.tangent(workspace.tangent);
   workspace.solver.factor(workspace.tangent);
@@ -216,6 +226,23 @@ std::optional<Slack> find_slack(System& system, analysis::Workspace& workspace) 
   slack.membranes = elements_at(slack.nodes, system.model().membranes);
   if (!slack.nodes.empty()) slack.text = sentence(system, slack);
   return slack;
+}
+
+Bracing::Bracing(System& system, analysis::Workspace& workspace) : system_(system) {
+  const auto slack = find_slack(system, workspace);
+  if (!slack) return;
+  Stiffened stiffened(system, workspace, slack->nodes);
+  la::Vector growing(system.layout());
+  system.load_rate(growing);
+  holds_ = stiffened.factor(some) && !load_feels(system, stiffened, growing);
+  if (!holds_) return;
+  auto stiffness = stiffened.scale();
+  for (double& k : stiffness) k *= some;
+  system.brace(std::move(stiffness));
+}
+
+Bracing::~Bracing() {
+  system_.brace({});
 }
 
 }  // namespace tautline::assembly

@@ -225,10 +225,13 @@ void System::assemble_tangent(la::SymmetricMatrix& k, const ContributionOf& cont
         add_free(expansion.blocks(), transformed, held(), k);
       });
   for (int block = map_.layout.first; block < map_.layout.first + map_.layout.local; ++block) {
-    Mat3 identity = Mat3::Zero();
+    Mat3 diagonal = Mat3::Zero();
     for (int c = 0; c < 3; ++c)
-      if (held()[static_cast<std::size_t>(3 * block + c)]) identity(c, c) = support_stiffness_;
-    k.add(std::array<int, 1>{block}, identity.data());
+      if (const auto at = static_cast<std::size_t>(3 * block + c); held()[at])
+        diagonal(c, c) = support_stiffness_;
+      else if (!bracing_.empty())
+        diagonal(c, c) = bracing_[at];
+    k.add(std::array<int, 1>{block}, diagonal.data());
   }
   k.finish();
 }
@@ -441,9 +444,9 @@ std::vector<double> System::largest_strains(const la::Vector& response) const {
       const double change = end_.temperature[next] - start_.temperature[next];
       const double free = expansion_of(model_.groups[element.group]) * change;
       ++next;
-      const auto n = element.nodes.size();
+      const std::size_t n = element.nodes.size(), sides = n == 2 ? 1 : n;
       double& most = largest[static_cast<std::size_t>(element.group)];
-      for (std::size_t i = 0; i < (n == 2 ? 1 : n); ++i) {
+      for (std::size_t i = 0; i < sides; ++i) {
         const auto a = element.nodes[i], b = element.nodes[(i + 1) % n];
         const Vec3 side = places[b] - places[a];
         const double stretch = side.dot(field.displacement[b] - field.displacement[a]) / side.squaredNorm();

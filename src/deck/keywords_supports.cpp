@@ -104,6 +104,8 @@ Block make_support() {
   return b.take();
 }
 
+constexpr double most_rotation = 1e4;  // a thousand turns and more: they are followed in parts
+
 /// What a load can be, in the order of the table.
 const std::vector<std::string>& load_kinds() {
   static const std::vector<std::string> words{
@@ -156,6 +158,8 @@ Block make_load() {
           "direction that is not 0. It stays there until another motion.");
   b.key("rotation", &Options::rotation)
       .in("rad")
+      .at_least(-most_rotation)
+      .at_most(most_rotation)
       .says(
           "Rotation vector by which each node is turned from its reference, any number of turns about an "
           "axis; a support must hold it. It takes the place of an earlier one and stays there until another. "

@@ -19,8 +19,8 @@ void SkewPart::add(int row, int column, const Mat3& block) {
 }
 
 void SkewPart::finish() {
-  constexpr double rounding = 1e-12;
   std::erase_if(blocks_, [](const auto& entry) {
+    constexpr double rounding = 1e-12;
     return entry.second.value.norm() <= rounding * entry.second.magnitude;
   });
   empty_ = !true_on_any_rank(!blocks_.empty());

@@ -15,7 +15,7 @@ std::string safe(const std::string& name) {
         (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '.';
     stem += kept ? c : '_';
   }
-  if (stem.empty() || stem.front() == '.' || stem.front() == '-') stem.insert(0, "_");
+  if (stem.empty() || stem.front() == '.' || stem.front() == '-') stem.insert(stem.begin(), '_');
   return stem;
 }
 

@@ -11,15 +11,17 @@ VecX balancing(const Context& context, const FormNet& form, const formfinding::B
     const auto& group = context.deck.groups.at(name);
     for (const int b : form.branches_of(context.structure, {name})) {
       const auto [i, j] = form.net.branches[b];
-      const auto branch = static_cast<std::size_t>(b);
-      wanted[b] = context.structure.cables[form.cables[branch]].initial_strain *
-                  form.stiffness(context.structure, branch);
+      wanted[b] = form.drawn_tension[b];
       if (!group.force_density) continue;
-      held[branch] = true;
+      held[static_cast<std::size_t>(b)] = true;
       wanted[b] = *group.force_density * (form.net.nodes[j] - form.net.nodes[i]).norm();
     }
   }
-  return formfinding::balancing_force_densities(form.net, wanted, held, form.surface, options);
+  try {
+    return formfinding::balancing_force_densities(form.net, wanted, held, form.surface, options);
+  } catch (const formfinding::NetError& error) {
+    throw named(context, form, error);
+  }
 }
 
 }  // namespace tautline::steps

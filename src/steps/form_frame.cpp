@@ -14,10 +14,11 @@ namespace tautline::steps {
 
 namespace {
 
-constexpr int most_rounds = 60;
-constexpr std::size_t anderson_depth = 8;
-constexpr double settled_frame = 1e-13;  // distance of the frame from where the net was found, over the size
-constexpr double enough = 1e3;           // times that, if it falls no further
+constexpr int most_rounds = 100;
+constexpr std::size_t anderson_depth = 60;
+constexpr double settled_frame = 1e-10;  // distance of the frame from where the net was found, over the size
+constexpr double diverging = 30;         // times the least distance: the net yields too much
+constexpr int impatience = 8;            // rounds in which the frame comes no nearer: likewise
 constexpr int patience = 12;             // rounds in which the frame comes no nearer
 
 /// Places of the net's fixed nodes.
@@ -49,6 +50,25 @@ double size_of(const Points& nodes) {
   return size;
 }
 
+/// By cable of the structure: form-finding keeps its unstressed length, or prescribes its length.
+std::vector<bool> lengths_kept(const Context& context, const FormFindingOptions& options,
+                               const FormNet& net) {
+  std::vector<bool> kept(context.structure.cables.size(), false);
+  const auto set = [&](const std::vector<std::string>& groups, bool value) {
+    for (const int b : net.branches_of(context.structure, groups))
+      kept[static_cast<std::size_t>(net.cables[b])] = value;
+  };
+  if (options.method == FormMethod::elastic || options.method == FormMethod::dynamic_relaxation)
+    set(net.groups, true);
+  if (options.method == FormMethod::dynamic_relaxation) set(options.constant_tension, false);
+  if (options.method != FormMethod::constraints) return kept;
+  for (const auto& wish : options.constraints)
+    if (wish.kind == formfinding::ConstraintKind::length ||
+        wish.kind == formfinding::ConstraintKind::unstressed_length)
+      set(wish.on, true);
+  return kept;
+}
+
 /// The rounds and what they leave.
 class Rounds {
  public:
@@ -58,7 +78,8 @@ class Rounds {
         options_(options),
         net_(net),
         hand_over_(hand_over),
-        frame_(context, net, settled, options.frame == FrameKind::precambered),
+        frame_(context, net, settled, options.frame == FrameKind::precambered,
+               lengths_kept(context, options, net)),
         size_(size_of(context.structure.nodes)) {}
 
   Form run(Json& entry);
@@ -66,6 +87,7 @@ class Rounds {
  private:
   /// The net between edges there, handed over. @return false, with a reason, if there is none
   bool find_net(const VecX& edge);
+  void start_next_from(const Form& found);
   /// The frame under the net. @return false, with a reason, if it finds no equilibrium
   bool rest();
   bool settled(double distance);
@@ -98,6 +120,7 @@ bool Rounds::find_net(const VecX& edge) {
         hand_over_(found);
         last_ = std::move(found);
         any_ = true;
+        start_next_from(last_);
         return true;
       }
       reason = found.reason;
@@ -112,6 +135,17 @@ bool Rounds::find_net(const VecX& edge) {
   context_.structure.nodes = before;
   why_ = fmt::format("between the places where the frame goes the net is not found: {}", reason);
   return false;
+}
+
+void Rounds::start_next_from(const Form& found) {
+  net_.start_density.resize(found.tension.size());
+  for (std::size_t b = 0; b < net_.net.branches.size(); ++b) {
+    const auto [i, j] = net_.net.branches[b];
+    const auto k = static_cast<Eigen::Index>(b);
+    net_.start_density[k] = found.tension[k] / (found.nodes[j] - found.nodes[i]).norm();
+  }
+  for (std::size_t i = 0; i < net_.nodes.size(); ++i)
+    if (!net_.net.fixed[i]) net_.net.nodes[i] = found.nodes[i];
 }
 
 bool Rounds::rest() {
@@ -130,7 +164,7 @@ bool Rounds::settled(double distance) {
                                     context_.step_name, changes_.size(), distance));
   since_ = distance < nearest_ / 2 ? 0 : since_ + 1;
   nearest_ = std::min(nearest_, distance);
-  return distance <= settled_frame * size_ || (distance <= enough * settled_frame * size_ && since_ > 0);
+  return distance == 0 || (distance <= settled_frame * size_ && since_ > 0);
 }
 
 void Rounds::fail(const std::string& reason) {
@@ -141,14 +175,20 @@ void Rounds::fail(const std::string& reason) {
 
 Form Rounds::run(Json& entry) {
   Anderson acceleration(anderson_depth);
-  VecX edge = edge_of(net_, frame_.positions()), plain = edge;
+  VecX edge = edge_of(net_, frame_.positions()), plain = edge, nearest_edge = edge;
+  auto nearest_motion = frame_.motion();
+  double at_restart = 0;  // of the acceleration: the least distance by then
   bool accelerated = false, there = false;
   while (static_cast<int>(changes_.size()) < most_rounds && since_ < patience) {
+    const auto before = frame_.motion();
     const bool found = find_net(edge);
     if (found && last_.compromise) break;  // no more than this net is to be had of the drawn frame
     if (!found || !rest()) {
-      if (!accelerated) break;
-      edge = plain;  // the acceleration led astray
+      // The acceleration led astray, or the frame went too far under a net that yields too much.
+      if (!accelerated && !frame_.stiffen_net()) break;
+      if (!any_) break;
+      edge = accelerated ? plain : nearest_edge;
+      frame_.return_to(accelerated ? before : nearest_motion);
       acceleration.restart();
       accelerated = false;
       why_.clear();
@@ -156,8 +196,23 @@ Form Rounds::run(Json& entry) {
     }
     plain = edge_of(net_, frame_.positions());
     const double distance = largest_motion(edge, plain);
+    if (distance < nearest_) {
+      nearest_edge = edge;
+      nearest_motion = before;
+    }
+    if (changes_.empty()) at_restart = distance;
+    const bool farther = distance > diverging * nearest_ || since_ >= impatience;
     there = settled(distance);
     if (there) break;
+    if (farther && (nearest_ < at_restart / 2 || frame_.stiffen_net())) {
+      edge = nearest_edge;
+      frame_.return_to(nearest_motion);
+      acceleration.restart();
+      accelerated = false;
+      at_restart = nearest_;
+      since_ = 0;
+      continue;
+    }
     const VecX next = acceleration.next(edge, plain);
     accelerated = !next.isApprox(plain, 1e-15);
     edge = next;
@@ -167,7 +222,7 @@ Form Rounds::run(Json& entry) {
     fail(why_);
   else if (!there && !last_.compromise)
     fail(fmt::format("net and frame still move each other by {:.3g} m > {:.3g} m after {} rounds",
-                     changes_.back().get<double>(), enough * settled_frame * size_, changes_.size()));
+                     changes_.back().get<double>(), settled_frame * size_, changes_.size()));
   // Where net and frame do not meet, the tables hold the net between the places where it was found.
   if (there) frame_.unload(context_.structure);
   entry["frame"] = {{"rounds", changes_.size()},

@@ -11,7 +11,6 @@
 #include <tautline/formfinding/dynamic_relaxation.hpp>
 #include <tautline/formfinding/force_density.hpp>
 #include <tautline/formfinding/minimal_film.hpp>
-#include <tautline/formfinding/node_error.hpp>
 
 #include "steps/form_verdict.hpp"
 #include "steps/self_stress_form.hpp"
@@ -39,28 +38,12 @@ VecX target_tensions(const model::Model& structure, const FormNet& form) {
   return target;
 }
 
-/// Tension of each cable as drawn over its length [N/m]; `otherwise` where it has none.
-VecX drawn_force_density(const model::Model& structure, const FormNet& form, double otherwise) {
-  VecX q(form.cables.size());
-  for (std::size_t b = 0; b < form.cables.size(); ++b) {
-    const auto& cable = structure.cables[form.cables[b]];
-    const double drawn =
-        cable.initial_strain * form.stiffness(structure, b) / structure.reference_length(cable);
-    q[static_cast<int>(b)] = drawn != 0 ? drawn : otherwise;
-  }
-  return q;
-}
-
-/// The net's own force densities, or else as drawn.
-VecX given_force_density(const model::Model& structure, const FormNet& form, double otherwise) {
-  return form.force_density.size() > 0 ? form.force_density : drawn_force_density(structure, form, otherwise);
-}
-
-VecX unstressed_lengths(const model::Model& structure, const FormNet& form) {
-  VecX lengths(form.cables.size());
-  for (std::size_t b = 0; b < form.cables.size(); ++b)
-    lengths[static_cast<int>(b)] = structure.unstressed_length(structure.cables[form.cables[b]]);
-  return lengths;
+/// The net's own force densities, or else tension over length as drawn [N/m]; `otherwise` where there is
+/// none.
+VecX given_force_density(const FormNet& form, double otherwise) {
+  if (form.force_density.size() > 0) return form.force_density;
+  const VecX drawn = form.drawn_tension.cwiseQuotient(form.drawn_length);
+  return (drawn.array() == 0).select(otherwise, drawn);
 }
 
 std::vector<bool> bars(const model::Model& structure, const FormNet& form) {
@@ -164,9 +147,9 @@ Form find_by_tensions(const Context& context, const FormFindingOptions& options,
   return result;
 }
 
-Form find_linear(const Context& context, const FormFindingOptions& options, const FormNet& form) {
+Form find_linear(const FormFindingOptions& options, const FormNet& form) {
   const auto found = formfinding::find_linear_form(
-      form.net, given_force_density(context.structure, form, options.initial_force_density), form.surface);
+      form.net, given_force_density(form, options.initial_force_density), form.surface);
   Form result;
   result.converged = true;
   result.reason = "one linear solve";
@@ -280,7 +263,7 @@ Form find_with_constraints(const Context& context, const FormFindingOptions& opt
   ConstrainedNet problem{form.net,
                          form.surface,
                          demands(structure, options, form),
-                         given_force_density(structure, form, options.initial_force_density),
+                         given_force_density(form, options.initial_force_density),
                          std::vector<bool>(form.cables.size(), false),
                          {},
                          {},
@@ -292,10 +275,19 @@ Form find_with_constraints(const Context& context, const FormFindingOptions& opt
   for (const auto& group : form.groups)
     if (keeps_force_density(context, options, group)) held.push_back(group);
   for (const int b : form.branches_of(structure, held)) problem.held[b] = true;
+  if (form.start_density.size() > 0)
+    for (std::size_t b = 0; b < problem.held.size(); ++b)
+      if (!problem.held[b])
+        problem.force_density[static_cast<Eigen::Index>(b)] =
+            form.start_density[static_cast<Eigen::Index>(b)];
   set_bounds(structure, options, form, problem);
   problem.pulls = bars(structure, form);
   problem.pulls.flip();
-  const auto found = formfinding::find_form(problem, constrained_options(options));
+  const auto found =
+      formfinding::find_form(problem, constrained_options(options), [&](int iteration, double residual) {
+        context.progress.update(
+            fmt::format("{} | iteration {}, residual {:.2e}", context.step_name, iteration, residual));
+      });
   Form result = begin(found);
   if (!found.misses.empty()) result.reason = reason_of_misses(context, form, found);
   result.compromise = !found.converged && found.in_balance && !found.misses.empty();
@@ -326,13 +318,12 @@ Form find_elastic(const Context& context, const FormFindingOptions& options, con
   formfinding::ElasticOptions solver;
   solver.tolerance = options.tolerance.value_or(solver.tolerance);
   solver.max_iterations = options.max_iterations.value_or(solver.max_iterations);
-  const VecX lengths = unstressed_lengths(context.structure, form);
-  formfinding::ElasticNet net{form.net, axial_stiffness(context.structure, form), lengths};
+  formfinding::ElasticNet net{form.net, axial_stiffness(context.structure, form), form.unstressed_length};
   net.carries_compression = bars(context.structure, form);
   const auto found = formfinding::find_elastic_equilibrium(net, solver);
   Form result = begin(found);
   result.tension = found.tension;
-  result.unstressed_length = lengths;
+  result.unstressed_length = form.unstressed_length;
   result.reaction = reactions(form, found.nodes, found.tension);
   result.residual = found.residual;
   result.residual_name = "largest force out of balance [N]";
@@ -372,16 +363,13 @@ Form relax(const Context& context, const FormFindingOptions& options, const Form
   solver.tolerance = options.tolerance.value_or(solver.tolerance);
   solver.max_iterations = options.max_iterations.value_or(solver.max_iterations);
   const auto& structure = context.structure;
-  formfinding::ElasticNet net{form.net, axial_stiffness(structure, form), unstressed_lengths(structure, form),
+  formfinding::ElasticNet net{form.net, axial_stiffness(structure, form), form.unstressed_length,
                               VecX::Constant(static_cast<Eigen::Index>(form.cables.size()), std::nan("")),
                               form.film};
   net.carries_compression = bars(structure, form);
   VecX lengths = net.unstressed_length;
   const auto constant = form.branches_of(structure, options.constant_tension);
-  for (const int b : constant) {
-    const auto& cable = structure.cables[form.cables[b]];
-    net.tension[b] = cable.initial_strain * form.stiffness(structure, static_cast<std::size_t>(b));
-  }
+  for (const int b : constant) net.tension[b] = form.drawn_tension[b];
   const auto found = formfinding::relax(net, solver);
   for (const int b : constant) {
     const auto [i, j] = form.net.branches[b];
@@ -413,8 +401,8 @@ Form find_film(const Context& context, const FormFindingOptions& options, const 
     tension[static_cast<int>(b)] = target > 0 ? target : std::nan("");
   }
   const auto found = formfinding::find_minimal_film(
-      {form.net, form.film, tension, drawn_force_density(structure, form, options.initial_force_density)},
-      solver, [&](int iteration, double residual) {
+      {form.net, form.film, tension, given_force_density(form, options.initial_force_density)}, solver,
+      [&](int iteration, double residual) {
         context.progress.update(
             fmt::format("{} | iteration {}, residual {:.2e} N", context.step_name, iteration, residual));
       });
@@ -439,8 +427,7 @@ Form find_by_method(const Context& context, const FormFindingOptions& options, c
   switch (options.method) {
     case FormMethod::linear:
     case FormMethod::balanced:
-      return form.film.empty() ? find_linear(context, options, form)
-                               : find_with_constraints(context, options, form);
+      return form.film.empty() ? find_linear(options, form) : find_with_constraints(context, options, form);
     case FormMethod::constraints:
       return find_with_constraints(context, options, form);
     case FormMethod::elastic:
@@ -480,8 +467,8 @@ Form find_form(const Context& context, const FormFindingOptions& options, const 
     Form found = find_by_method(context, options, form);
     refuse_collapsed(context.structure, form, found);
     return found;
-  } catch (const formfinding::NodeError& error) {
-    throw ModelError("form-finding: " + error.with([&](int node) { return form.node_name(context, node); }));
+  } catch (const formfinding::NetError& error) {
+    throw named(context, form, error);
   }
 }
 

@@ -54,9 +54,14 @@ void add_branches(const model::Model& structure, FormNet& form) {
     form.local[form.nodes[i]] = static_cast<int>(i);
     form.net.nodes.push_back(structure.nodes[form.nodes[i]]);
   }
-  for (const int cable : form.cables) {
-    const auto& nodes = structure.cables[cable].nodes;
-    form.net.branches.push_back({form.local[nodes[0]], form.local[nodes[1]]});
+  const auto n = static_cast<Eigen::Index>(form.cables.size());
+  form.drawn_tension = form.drawn_length = form.unstressed_length = VecX(n);
+  for (Eigen::Index b = 0; b < n; ++b) {
+    const auto& cable = structure.cables[form.cables[static_cast<std::size_t>(b)]];
+    form.net.branches.push_back({form.local[cable.nodes[0]], form.local[cable.nodes[1]]});
+    form.drawn_tension[b] = cable.initial_strain * structure.axial_stiffness(cable);
+    form.drawn_length[b] = structure.reference_length(cable);
+    form.unstressed_length[b] = structure.unstressed_length(cable);
   }
 }
 
@@ -246,6 +251,12 @@ std::string FormNet::node_name(const Context& context, int node) const {
   const bool named = context.deck.model && i < context.deck.model->nodes.size();
   return named ? fmt::format("node \"{}\" at {}", context.deck.model->nodes[i].first, at)
                : fmt::format("the node at {}", at);
+}
+
+ModelError named(const Context& context, const FormNet& form, const formfinding::NetError& error) {
+  return ModelError("form-finding: " +
+                    error.with([&](int node) { return form.node_name(context, node); },
+                               [&](int branch) { return form.describe(context.structure, branch); }));
 }
 
 FormNet extract_net(const Context& context, const FormFindingOptions& options) {

@@ -1,7 +1,9 @@
 #include "steps/frame_balance.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -11,13 +13,23 @@
 #include <tautline/core/error.hpp>
 #include <tautline/model/element_data.hpp>
 
+#include "steps/frozen_net.hpp"
+
 namespace tautline::steps {
 
 namespace {
 
-constexpr std::size_t anderson_depth = 8;
-constexpr int most_rounds = 100;  // for the shape without stress
-constexpr int patience = 6;       // rounds in which the force left does not fall: it is rounding
+constexpr std::size_t anderson_depth = 60;
+/// E A of the net's cables over their tension while the frame moves, none larger than it is.
+constexpr std::array<double, 5> net_yields{force_density_kept, 3, 30, 300,
+                                           std::numeric_limits<double>::infinity()};
+/// The same of the frame's own cables of stated tension, which may be all that keeps it from being a
+/// mechanism.
+constexpr double own_cables_yield = 30;
+constexpr double coarsest_step = 0.1;  // of a path that may be tried again with a stiffer net
+constexpr double tightness = 1e-12;    // of the frame's equilibrium, a round of many
+constexpr int most_rounds = 100;       // for the shape without stress
+constexpr int patience = 6;            // rounds in which the force left does not fall: it is rounding
 
 /// The same cable between ends elsewhere.
 void keep_unstressed_length(const Points& from, const Points& to, model::Cable& cable) {
@@ -26,23 +38,19 @@ void keep_unstressed_length(const Points& from, const Points& to, model::Cable& 
   cable.initial_strain = (to[b] - to[a]).norm() / unstressed - 1;
 }
 
-/// What a triangle with Cauchy resultants N in its frame pulls its corners with.
-std::array<Vec3, 3> corner_forces(const Points& x, const std::array<int, 3>& nodes, const Vec3& resultants) {
-  const Vec3 a = x[nodes[0]], b = x[nodes[1]], c = x[nodes[2]];
-  Mat3 corners;
-  corners << a, b, c;
-  const Mat<3, 2> axes = element::membrane_frame<3>(corners).leftCols<2>();
-  const Vec3 normal = (b - a).cross(c - a).normalized();
-  Mat<2> stress;
-  stress << resultants[0], resultants[2], resultants[2], resultants[1];
-  const Mat3 in_space = axes * stress * axes.transpose();
-  // Half of what crosses the opposite side, whose outward normal in the plane is side x normal.
-  std::array<Vec3, 3> force;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 side = corners.col((k + 2) % 3) - corners.col((k + 1) % 3);
-    force[static_cast<std::size_t>(k)] = 0.5 * in_space * side.cross(normal);
+/// Forces on the nodes that move; the others rest.
+void load(model::Model& frame, const Points& force, const std::vector<bool>& moves) {
+  auto& rest = frame.supports.emplace_back();
+  rest.name = "no part of the frame";
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    if (!moves[i]) {
+      rest.nodes.push_back(static_cast<int>(i));
+      continue;
+    }
+    auto& load = frame.loads.emplace_back();
+    load.nodes = {static_cast<int>(i)};
+    load.force = force[i];
   }
-  return force;
 }
 
 /// Second Piola-Kirchhoff resultants before a motion for Cauchy resultants after it, less what the motion
@@ -81,16 +89,27 @@ Mat3 corners_of(const Points& x, const model::FacetNodes& n) {
 }  // namespace
 
 Frame::Frame(const Context& context, const FormNet& net, const std::vector<std::string>& found,
-             bool precambered)
+             bool precambered, std::vector<bool> keeps_length)
     : drawn_(context.structure.nodes),
       reference_(drawn_),
       precambered_(precambered),
+      keeps_length_(std::move(keeps_length)),
       found_(context.structure.groups.size(), false),
       free_(context.structure.nodes.size(), false),
       of_frame_(context.structure.nodes.size(), false) {
   const auto& structure = context.structure;
   for (const auto& name : found) found_[static_cast<std::size_t>(structure.find_group(name))] = true;
-  for (std::size_t i = 0; i < net.nodes.size(); ++i) free_[net.nodes[i]] = !net.net.fixed[i];
+  pulls_ = found_;
+  for (std::size_t i = 0; i < pulls_.size(); ++i) {
+    const auto& group = structure.groups[i];
+    const auto& states = context.deck.groups.at(group.name);
+    if (group.kind == model::ElementKind::cable && (states.tension || states.force_density)) pulls_[i] = true;
+  }
+  for (std::size_t i = 0; i < net.nodes.size(); ++i) {
+    free_[net.nodes[i]] = !net.net.fixed[i];
+    if (net.surface != nullptr && !net.net.fixed[i] && (net.net.on_surface.empty() || net.net.on_surface[i]))
+      on_surface_.push_back(net.nodes[i]);
+  }
   model::for_each_kind(structure, [&](const auto& elements) {
     for (const auto& element : elements) {
       if (!is_frame(element)) continue;
@@ -104,51 +123,67 @@ Frame::Frame(const Context& context, const FormNet& net, const std::vector<std::
   motion_.rotation.assign(reference_.size(), Mat3::Identity());
 }
 
-Points Frame::pull(const model::Model& structure) const {
-  Points force(structure.nodes.size(), Vec3::Zero());
-  for (const auto& cable : structure.cables) {
-    if (!is_found(cable.group)) continue;
-    const auto [a, b] = cable.nodes;
-    const double tension = structure.axial_stiffness(cable) * cable.initial_strain;
-    const Vec3 along = tension * (structure.nodes[b] - structure.nodes[a]).normalized();
-    force[a] += along;
-    force[b] -= along;
-  }
-  for (const auto& membrane : structure.membranes) {
-    if (!is_found(membrane.group)) continue;
-    if (membrane.nodes.size() != 3)
-      throw ModelError("form-finding: cloth on an elastic frame must be of triangles");
-    const std::array<int, 3> nodes{membrane.nodes[0], membrane.nodes[1], membrane.nodes[2]};
-    const auto forces = corner_forces(structure.nodes, nodes, membrane.prestress);
-    for (std::size_t k = 0; k < 3; ++k) force[nodes[k]] += forces[k];
-  }
-  return force;
-}
-
-model::Model Frame::loaded_frame(const model::Model& structure) const {
+model::Model Frame::bare_frame(const model::Model& structure, const std::vector<bool>& left_out) const {
   model::Model frame = structure;
   frame.nodes = reference_;
   frame.initial = motion_;
   orient(frame);
   model::for_each_kind(frame, [&](auto& elements) {
-    std::erase_if(elements, [&](const auto& element) { return !is_frame(element); });
+    std::erase_if(elements, [&](const auto& element) {
+      return !is_frame(element) || left_out[static_cast<std::size_t>(element.group)];
+    });
   });
   for (auto& cable : frame.cables) keep_unstressed_length(structure.nodes, reference_, cable);
   frame.selections.clear();
   frame.loads.clear();
-  const Points force = pull(structure);
-  auto& rest = frame.supports.emplace_back();
-  rest.name = "no part of the frame";
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    if (!of_frame_[i]) {
-      rest.nodes.push_back(static_cast<int>(i));
-      continue;
-    }
-    auto& load = frame.loads.emplace_back();
-    load.nodes = {static_cast<int>(i)};
-    load.force = force[i];
-  }
   return frame;
+}
+
+model::Model Frame::loaded_frame(const model::Model& structure) const {
+  model::Model frame = bare_frame(structure, found_);
+  load(frame, net_pull(structure, found_), of_frame_);
+  return frame;
+}
+
+std::vector<double> Frame::yielding(const model::Model& structure) const {
+  std::vector<double> yielding(structure.cables.size());
+  for (std::size_t i = 0; i < yielding.size(); ++i) {
+    const double net = net_yields[stiffening_];
+    yielding[i] = keeps_length_[i]                      ? net_yields.back()
+                  : is_found(structure.cables[i].group) ? net
+                                                        : std::max(net, own_cables_yield);
+  }
+  return yielding;
+}
+
+model::Model Frame::frame_with_net(const model::Model& structure) const {
+  model::Model frame = bare_frame(structure, pulls_);
+  for (std::size_t i = 0; i < reference_.size(); ++i)
+    if (!of_frame_[i]) frame.nodes[i] = structure.nodes[i];
+  const FrozenNet frozen = freeze(structure, pulls_, yielding(structure));
+  std::vector<bool> moves = of_frame_;
+  for (auto cable : frozen.cables) {
+    keep_unstressed_length(structure.nodes, frame.nodes, cable);
+    frame.cables.push_back(cable);
+    for (const int node : cable.nodes) moves[static_cast<std::size_t>(node)] = true;
+  }
+  frame.groups.push_back(frozen.group);
+  Points force = net_pull(structure, pulls_);
+  for (std::size_t i = 0; i < force.size(); ++i)
+    force[i] = (of_frame_[i] ? force[i] : Vec3(Vec3::Zero())) - frozen.pull[i];
+  load(frame, force, moves);
+  auto& surface = frame.supports.emplace_back();
+  surface.name = "surface of the net";
+  surface.fixed = {false, false, true, false, false, false};
+  for (const int node : on_surface_)
+    if (moves[static_cast<std::size_t>(node)]) surface.nodes.push_back(node);
+  return frame;
+}
+
+bool Frame::stiffen_net() {
+  if (precambered_ || stiffening_ + 1 == net_yields.size()) return false;
+  ++stiffening_;
+  return true;
 }
 
 double Frame::rest(const Context& context, const model::Model& structure) {
@@ -160,7 +195,8 @@ std::string Frame::moved_most(const assembly::System& system) const {
   std::size_t most = 0;
   double largest = 0;
   for (std::size_t i = 0; i < reference_.size(); ++i)
-    if (const double way = (state.displacement[i] - motion_.displacement[i]).norm(); way > largest) {
+    if (const double way = (state.displacement[i] - motion_.displacement[i]).norm();
+        of_frame_[i] && way > largest) {
       largest = way;
       most = i;
     }
@@ -180,10 +216,13 @@ std::string Frame::moved_most(const assembly::System& system) const {
 }
 
 double Frame::yield(const Context& context, const model::Model& structure) {
-  assembly::System system(loaded_frame(structure));
+  assembly::System system(frame_with_net(structure));
   analysis::Workspace workspace{system.new_matrix(), {}};
   system.begin_stage({system.model().supports, system.model().loads});
-  const auto path = analysis::follow_path(system, workspace, context.deck.solver);
+  auto solver = context.deck.solver;
+  solver.force_tolerance = std::min(solver.force_tolerance, tightness);
+  if (stiffening_ + 1 < net_yields.size()) solver.min_step = std::max(solver.min_step, coarsest_step);
+  const auto path = analysis::follow_path(system, workspace, solver);
   if (!path.reached)
     throw ModelError(fmt::format(
         "form-finding: the frame made as drawn finds no equilibrium under the net: it bears {:.3g} "
@@ -192,9 +231,12 @@ double Frame::yield(const Context& context, const model::Model& structure) {
         path.lambda(), moved_most(system), path.reason));
   const auto& state = system.state();
   double change = 0;
-  for (std::size_t i = 0; i < reference_.size(); ++i)
+  for (std::size_t i = 0; i < reference_.size(); ++i) {
+    if (!of_frame_[i]) continue;
     change = std::max(change, (state.displacement[i] - motion_.displacement[i]).norm());
-  motion_ = {state.displacement, state.rotation};
+    motion_.displacement[i] = state.displacement[i];
+    motion_.rotation[i] = state.rotation[i];
+  }
   return change;
 }
 

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include <tautline/analysis/stability.hpp>
 #include <tautline/assembly/mechanism.hpp>
+#include <tautline/assembly/slack.hpp>
 #include <tautline/core/error.hpp>
 
 #include "steps/buckling_course.hpp"
@@ -24,12 +26,16 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 using assembly::Branch;
 using Sign = BucklingOptions::Sign;
 
-/// Why the present state has no factors, or nothing.
-std::string why_unstable(assembly::System& system, analysis::Workspace& workspace) {
-  const int negative = analysis::count_negative(system, workspace);
-  if (workspace.solver.inertia().null > 0 || !workspace.solver.failure().empty())
-    if (const auto mechanism = assembly::find_mechanism(system, workspace))
-      throw ModelError(fmt::format("linear buckling: {}", mechanism->text));
+/// Why the present state has no factors, or nothing. Parts that hang slack and that nothing loads are braced.
+std::string why_unstable(assembly::System& system, analysis::Workspace& workspace,
+                         std::optional<assembly::Bracing>& bracing) {
+  int negative = analysis::count_negative(system, workspace);
+  if (workspace.solver.inertia().null > 0 || !workspace.solver.failure().empty()) {
+    bracing.emplace(system, workspace);
+    const auto mechanism = bracing->holds() ? std::nullopt : assembly::find_mechanism(system, workspace);
+    if (mechanism) throw ModelError(fmt::format("linear buckling: {}", mechanism->text));
+    negative = analysis::count_negative(system, workspace);
+  }
   if (negative == 0) return "";
   return fmt::format(
       "the present state is unstable already: {} negative pivot{}. Buckling is looked for from a stable "
@@ -103,7 +109,8 @@ void find_along(Context& context, const std::vector<std::string>& loads, int mod
   auto& system = context.system();
   auto& workspace = context.workspace();
   system.begin_stage(boundary_with(context, loads, sense));
-  found.failure = why_unstable(system, workspace);
+  std::optional<assembly::Bracing> bracing;
+  found.failure = why_unstable(system, workspace, bracing);
   if (!found.failure.empty()) return;
   const bool changes = system.changes_at_rest();
   BucklingCourse course(system, workspace);

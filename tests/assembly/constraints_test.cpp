@@ -322,21 +322,21 @@ TEST(LinearConstraint, SharesALoadByVirtualWork) {
 
 /// A prescribed rotation rolls a cantilever up: M = E I theta / L and a circle, whatever the angle.
 TEST(PrescribedMotion, RollsACantileverUpToTwoTurns) {
-  auto model = cantilever(40, 1.0, rod());
+  auto model = cantilever(20, 1.0, rod());
   model.groups[0].beam.axial_stiffness = 1e8;
   System system(model);
-  Boundary boundary{{support({0}, clamped), support({40}, {false, false, false, true, true, true})}, {}};
+  Boundary boundary{{support({0}, clamped), support({20}, {false, false, false, true, true, true})}, {}};
   model::Load turn;
   turn.name = "turn";
-  turn.nodes = {40};
+  turn.nodes = {20};
   turn.rotation = Vec3(0, -4 * pi, 0);
   boundary.loads = {turn};
   solve(system, boundary);
-  EXPECT_NEAR(system.reactions().moment[40].y(), -4 * pi * 2e3, 1e-6 * 4 * pi * 2e3);
-  // 20 elements for a turn: the chord polygon closes as the circle does
+  EXPECT_NEAR(system.reactions().moment[20].y(), -4 * pi * 2e3, 1e-6 * 4 * pi * 2e3);
+  // 10 elements for a turn: the chord polygon closes as the circle does
   const auto x = model::positions(system.model(), system.state());
-  EXPECT_LT(x[40].norm(), 1e-5);
   EXPECT_LT(x[20].norm(), 1e-5);
+  EXPECT_LT(x[10].norm(), 1e-5);
 }
 
 TEST(PrescribedMotion, OfADirectionThatNothingHoldsIsRefused) {

@@ -50,7 +50,7 @@ TEST(SkewPart, OfADeadMomentWhereOneRotationIsHeldAboutASkewAxis) {
 TEST(SkewPart, OfADeadMomentOnAFollower) {
   auto model = beam_to({0.6, -0.5, 1.1}, 2);
   model.nodes.emplace_back(0.8, -0.2, 1.3);
-  model.links.push_back({2, 3});
+  model.links.push_back({2, 3, false, {}});
   System system(model);
   solve(system, clamped_root(load(3, {3, 5, -2}, {40, -25, 60})));
   expect_whole_derivative(system);
@@ -60,7 +60,7 @@ TEST(SkewPart, OfADeadMomentOnAFollower) {
 TEST(SkewPart, IsEmptyForDeadForcesAndAboutAFixedAxis) {
   auto model = beam_to({0.6, -0.5, 1.1}, 2);
   model.nodes.emplace_back(0.8, -0.2, 1.3);
-  model.links.push_back({2, 3});
+  model.links.push_back({2, 3, false, {}});
   System arm(model);
   solve(arm, clamped_root(load(3, {30, 50, -20})));
   EXPECT_TRUE(arm.skew_part().empty());

@@ -155,6 +155,27 @@ TEST(Slack, IsNotBlamedForAMechanismBesideIt) {
   EXPECT_FALSE(slack_of(model, {{support({0, 2, 4, 5})}, {}}));
 }
 
+TEST(Slack, IsBracedUnlessTheLoadsThatGrowActOnIt) {
+  const auto model = taut_and_slack();
+  System system(model);
+  analysis::Workspace workspace{system.new_matrix(), la::DirectSolver()};
+  const auto nulls = [&] {
+    system.tangent(workspace.tangent);
+    workspace.solver.factor(workspace.tangent);
+    return workspace.solver.inertia().null;
+  };
+  system.begin_stage({{support({0, 2, 4})}, {load(1, Vec3(0, 0, -1))}});
+  {
+    const Bracing bracing(system, workspace);
+    EXPECT_TRUE(bracing.holds());
+    EXPECT_EQ(nulls(), 0);
+  }
+  EXPECT_EQ(nulls(), 3);
+  system.begin_stage({{support({0, 2, 4})}, {load(1, Vec3(0, 0, -1)), load(3, Vec3(0, 1e-6, 0))}});
+  const Bracing bracing(system, workspace);
+  EXPECT_FALSE(bracing.holds());
+}
+
 TEST(Slack, UnloadedNodesDoNotStopAStage) {
   const auto model = taut_and_slack();
   System system(model);

@@ -171,7 +171,7 @@ TEST(GeometryDoubts, LeaveMembersThatMeetAtTheirEndsOrAreLinked) {
   auto model = cross(1, 0);
   model.nodes[2] = Vec3(0, 1e-9, 0);  // the end of one lies on the other
   EXPECT_EQ(codes(geometry_doubts(model)), Codes{"node_on_element"});
-  model.links.push_back({0, 2});
+  model.links.push_back({0, 2, false, {}});
   EXPECT_EQ(codes(geometry_doubts(model)), Codes());
 }
 
@@ -199,7 +199,7 @@ TEST(GeometryDoubts, TellOfNodesAtOnePlaceOrAHairApart) {
     ASSERT_EQ(codes(doubts), Codes{"coincident_nodes"}) << gap;
     EXPECT_TRUE(mentions(doubts[0].message, "node \"top\" at (0, 0, 10) and node \"top2\""));
     auto hinged = model;
-    hinged.links.push_back({1, 4, true});
+    hinged.links.push_back({1, 4, true, {}});
     EXPECT_EQ(codes(geometry_doubts(hinged)), Codes());
     auto sprung = model;
     sprung.springs.push_back({{1, 4}, 0});

@@ -63,7 +63,7 @@ std::vector<double> last_numbers(const std::string& row, std::size_t n) {
 TEST(Tables, NodesKeepAllDigitsAndTheirGroup) {
   const TemporaryDirectory directory("tables_nodes");
   const auto model = small_model();
-  model::State state{Points(5, Vec3(1e-3 / 7, 0, -1e-17)), std::vector<Mat3>(5, Mat3::Identity()), {}};
+  model::State state{Points(5, Vec3(1e-3 / 7, 0, -1e-17)), std::vector<Mat3>(5, Mat3::Identity()), {}, {}};
   state.rotation[2] = Eigen::AngleAxisd(0.25, Vec3::UnitZ()).toRotationMatrix();
   write_nodes(directory.file("nodes.csv"), model, state);
   const auto rows = lines_of(directory.file("nodes.csv"));

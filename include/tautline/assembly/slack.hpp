@@ -23,4 +23,23 @@ struct Slack {
 /// then it is a mechanism
 std::optional<Slack> find_slack(System& system, analysis::Workspace& workspace);
 
+/// @brief Next to no stiffness in every tangent, while it lives, where slack parts move without resistance:
+/// for analyses about an equilibrium in which such parts stay where they are.
+///
+/// Forces and what resists by itself are as before. Collective.
+class Bracing {
+ public:
+  /// @param system  in a stage begun at an equilibrium whose tangent is singular
+  Bracing(System& system, analysis::Workspace& workspace);
+  ~Bracing();
+  Bracing(const Bracing&) = delete;
+  Bracing& operator=(const Bracing&) = delete;
+  /// False where it is no use: what moves is a mechanism, or the stage's loads act on what is slack.
+  bool holds() const { return holds_; }
+
+ private:
+  System& system_;
+  bool holds_ = false;
+};
+
 }  // namespace tautline::assembly

@@ -180,6 +180,9 @@ class System : public analysis::PathProblem {
   la::Vector mean_motion(const std::vector<int>& nodes, const Vec3& direction) const;
   /// Moves the present state by an increment of the unknowns, e.g. along a mode. Collective.
   void move(const la::Vector& increment);
+  /// Adds stiffness [N/m] by unknown, of all ranks, to the diagonal of every tangent; an empty list takes it
+  /// away.
+  void brace(std::vector<double> stiffness) { bracing_ = std::move(stiffness); }
   /// Holds each cable that only pulls on a branch of its law; an empty list lets all follow their own.
   void hold_branches(std::vector<Branch> branches);
   /// Whether a membrane may wrinkle, so that its stiffness depends on where a load takes it.
@@ -352,6 +355,7 @@ class System : public analysis::PathProblem {
   std::optional<std::vector<double>> wanted_strain_;
   double lambda_ = 1, driven_to_ = 0, committed_drive_ = 0, size_ = 1;
   double support_stiffness_ = 1;
+  std::vector<double> bracing_;            // by unknown, or none
   mutable std::vector<double> magnitude_;  // of the last residual, all unknowns
   mutable double assembly_seconds_ = 0;
   std::vector<Branch> branches_;           // of the cables, or none: their own
