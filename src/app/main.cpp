@@ -137,7 +137,7 @@ int in_session(const std::function<int()>& action) {
 int any_study(const Request& request) {
   if (request.over.empty()) return in_session([&] { return study(request); });
   if (la::launched_by_mpirun()) return in_session([&] { return study_parameters(request); });
-  watch_for_interrupt(1.9);  // longer than its runs
+  watch_for_interrupt(1.7);  // longer than its runs
   return guarded([&] { return study_parameters(request); });
 }
 

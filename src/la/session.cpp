@@ -55,6 +55,7 @@ bool takes_petsc_options() {
 
 Session::Session() {
   setenv("OPENBLAS_NUM_THREADS", "1", 0);
+  setenv("PATH", "/usr/local/bin:/usr/bin:/bin", 0);  // OpenMPI starts a helper by its name
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);  // without mpirun no daemon: a third of a second a run
   char program[] = "tautline", skip[] = "-skip_petscrc";  // obeyed as an argument only
   char* list[] = {program, skip, nullptr};

@@ -1,5 +1,6 @@
 #include <tautline/steps/run.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -166,6 +167,21 @@ void write_tables(Context& context, const assembly::System::NodalForces& reactio
   output::write_cut_list(context.path("cut_list.csv"), system.model(), response);
 }
 
+/// Holds the system as the last equilibrium of the steps done did, for reactions that no step is left to
+/// find.
+void hold_as_at_the_end(Context& context) {
+  const auto& steps = context.deck.steps;
+  const auto last = std::find_if(steps.rbegin(), steps.rend(), [](const Step& step) {
+    return std::holds_alternative<EquilibriumOptions>(step.options);
+  });
+  const auto* equilibrium = last == steps.rend() ? nullptr : std::get_if<EquilibriumOptions>(&last->options);
+  const bool free = equilibrium != nullptr && equilibrium->support == Ground::free;
+  const bool staged = equilibrium != nullptr && !equilibrium->stages.empty();
+  const auto hold = staged ? equilibrium->stages.back().hold : std::vector<std::string>{};
+  if (free || context.is_supported(hold))
+    context.system().begin_stage(free ? context.free_boundary(true) : context.boundary(hold, true));
+}
+
 /// Brings the run to where the checkpoint was written: structure and mesh are made again, all else is read.
 /// @return the number of steps done
 int take_up(Context& context, const Checkpoint& checkpoint, const std::string& from) {
@@ -187,6 +203,8 @@ int take_up(Context& context, const Checkpoint& checkpoint, const std::string& f
   context.acting_loads = checkpoint.acting_loads;
   if (checkpoint.rest || checkpoint.point) require_fit(checkpoint, context.system().rest(), from);
   if (checkpoint.rest) context.system().restore(*checkpoint.rest);
+  if (checkpoint.rest && checkpoint.steps_done == static_cast<int>(context.deck.steps.size()))
+    hold_as_at_the_end(context);
   context.resume = checkpoint.point;
   context.checkpoints.begin_at(checkpoint);
   return checkpoint.steps_done;

@@ -48,6 +48,8 @@ says "$WORK/lee/results.json" '"limit"'
 
 expect 0 "$TAUTLINE" run "$deck" -o "$WORK/more" --from "$whole" "${options[@]}" --set steps.modal.modes=6
 says "$WORK/more/results.json" '"steps": 3'
+expect 0 "$TAUTLINE" run "$deck" -o "$WORK/again" --from "$whole" "${options[@]}"   # nothing is left to do but the tables
+[ "$(wc -l <"$WORK/again/reactions.csv")" -eq "$(wc -l <"$whole/reactions.csv")" ] || fail "reactions are missing after a resumption"
 expect 5 "$TAUTLINE" run "$deck" -o "$WORK/other" --from "$whole" --quiet --set parameters.side=2000
 says "$WORK/err" 'another structure'
 expect 5 "$TAUTLINE" run "$deck" -o "$WORK/other" --from "$WORK/nowhere" --quiet
