@@ -2,13 +2,17 @@
 /// The command line. CLI11 is slow to compile and stays in this file.
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <thread>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <tautline/core/error.hpp>
 #include <tautline/core/interrupt.hpp>
@@ -115,7 +119,12 @@ int guarded(const std::function<int()>& action) {
 /// Runs with the libraries started; until a run begins, which watches Ctrl-C, it ends the process. A failure
 /// that only one rank may have met ends all of them.
 int in_session(const std::function<int()>& action) {
-  const la::Session session;
+  std::optional<la::Session> session;
+  const int began = guarded([&] {
+    session.emplace();
+    return 0;
+  });
+  if (began != 0) return began;
   end_at_interrupt();
   const int code = guarded(action);
   if (code >= static_cast<int>(ExitCode::library_failed) && code != static_cast<int>(ExitCode::interrupted) &&
@@ -170,6 +179,14 @@ int told(int result) {
   if (std::cout || result != 0) return result;
   std::cerr << "error: what there is to say cannot be written to the standard output\n";
   return static_cast<int>(ExitCode::library_failed);
+}
+
+/// A standard stream that is closed would be the next file that is opened, and what is said would be written
+/// into it. Instead nothing comes from it, or goes to it; to the standard output in vain, which is told.
+void hold_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY) != stream)
+      std::_Exit(static_cast<int>(ExitCode::library_failed));
 }
 
 int command(int argc, char** argv) {
@@ -266,5 +283,6 @@ int command(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hold_standard_streams();
   return told(command(argc, argv));
 }

@@ -13,8 +13,9 @@ namespace {
 constexpr std::size_t longest = 2000;  // bytes of a sentence, which may hold names of any length
 
 std::string place(const SourceLocation& where) {
-  if (where.line == 0) return where.file;
-  return fmt::format("{}:{}:{}", where.file, where.line, where.column);
+  const std::string file = shortened(where.file, longest);
+  if (where.line == 0) return file;
+  return fmt::format("{}:{}:{}", file, where.line, where.column);
 }
 
 std::string summary(const std::vector<Diagnostic>& diagnostics) {
@@ -55,7 +56,7 @@ std::string to_string(const Diagnostic& d) {
   if (!d.expectation.empty()) detail += (detail.empty() ? "" : "; ") + d.expectation;
   if (!detail.empty()) text += "  " + shortened(detail, longest) + "\n";
   if (!d.suggestion.empty()) text += "  " + shortened(d.suggestion, longest) + "\n";
-  return text;
+  return printable(text);
 }
 
 DeckError::DeckError(std::vector<Diagnostic> diagnostics)

@@ -103,4 +103,13 @@ std::size_t first_bad_byte(std::string_view text) {
   return std::string_view::npos;
 }
 
+std::string printable(std::string_view text) {
+  std::string result;
+  for (auto bad = first_bad_byte(text); bad != std::string_view::npos; bad = first_bad_byte(text)) {
+    result += fmt::format("{}\\x{:02X}", text.substr(0, bad), static_cast<unsigned char>(text[bad]));
+    text.remove_prefix(bad + 1);
+  }
+  return result.append(text);
+}
+
 }  // namespace tautline

@@ -63,6 +63,9 @@ void check_mesh_file(Deck& deck, const Node& mesh, Reader& reader) {
                     "expected a path relative to the deck's folder");
   else if (fs::is_directory(file, error))
     reader.complain(mesh.place, fmt::format("mesh file \"{}\" is a folder", file.string()), "in model");
+  else if (!fs::is_regular_file(file, error))
+    reader.complain(mesh.place, fmt::format("mesh file \"{}\" is a device or a pipe", file.string()),
+                    "in model", "expected a file");
   deck.model->mesh_file = file.string();
 }
 

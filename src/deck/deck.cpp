@@ -5,6 +5,7 @@
 #include <deck/parameters.hpp>
 #include <deck/reader.hpp>
 #include <deck/yaml_tree.hpp>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -14,6 +15,8 @@
 namespace tautline::deck {
 
 namespace {
+
+constexpr std::size_t most_bytes = 100'000'000;  ///< of a deck
 
 [[noreturn]] void fail(const std::string& path, const std::string& message) {
   Diagnostic diagnostic;
@@ -28,7 +31,12 @@ std::string read_bytes(const std::string& path) {
   if (std::filesystem::is_directory(path, error)) fail(path, "this is a folder, not a deck");
   std::ifstream file(path, std::ios::binary);
   if (!file) fail(path, "this file cannot be read");
-  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::string text;
+  std::array<char, 65536> part{};
+  while (file.read(part.data(), part.size()) || file.gcount() > 0) {
+    text.append(part.data(), static_cast<std::size_t>(file.gcount()));
+    if (text.size() > most_bytes) fail(path, fmt::format("this file has more than {} bytes", most_bytes));
+  }
   if (file.bad()) fail(path, "this file cannot be read");
   return text;
 }
@@ -63,6 +71,8 @@ void write_values(const Node& node, std::string& to) {
 
 /// Of what a mesh file holds; a file that cannot be read is complained of elsewhere.
 std::string content_fingerprint(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return {};
   std::ifstream file(path, std::ios::binary);
   return sha256(std::string{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()});
 }

@@ -30,6 +30,11 @@ class Override {
   Override(const std::string& text, Complaints& complaints) : text_(text), complaints_(complaints) {}
 
   void apply(Node& root) {
+    if (const auto bad = first_bad_byte(text_); bad != std::string::npos)
+      return fail(
+          fmt::format("this holds the byte 0x{:02X}, which is no text in UTF-8 or a control character",
+                      static_cast<unsigned char>(text_[bad])),
+          "expected plain text", {});
     const auto equals = text_.find('=');
     if (equals == std::string::npos || equals == 0)
       return fail("this is no override", "expected path.to.key=value", {});

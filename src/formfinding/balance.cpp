@@ -23,7 +23,7 @@ std::vector<std::string> stability_warnings(const NetSystem& system, const NetSt
     warnings.push_back(
         fmt::format("{} of {} branches are compression members; the most negative force density is "
                     "{:.4g} N/m, in branch {}",
-                    pressed, system.n_branches(), q, most));
+                    pressed, system.n_branches(), q, most + 1));
   }
   if (const int unstable = system.negative_pivots(); unstable > 0)
     warnings.push_back(

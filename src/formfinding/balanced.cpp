@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <tautline/core/error.hpp>
+#include <tautline/formfinding/node_error.hpp>
 #include <tautline/formfinding/force_density.hpp>
 
 namespace tautline::formfinding {
@@ -22,9 +23,9 @@ void check(const Net& net, const VecX& wanted) {
   for (std::size_t b = 0; b < net.branches.size(); ++b) {
     const auto [i, j] = net.branches[b];
     if (!(wanted[static_cast<Eigen::Index>(b)] > 0))
-      throw ModelError(fmt::format("branch {} has no tension to aim at", b + 1));
+      throw NetError({branch_word(static_cast<int>(b)), " has no tension to aim at"});
     if (!((net.nodes[j] - net.nodes[i]).norm() > 0))
-      throw ModelError(fmt::format("branch {} has no length as drawn", b + 1));
+      throw NetError({branch_word(static_cast<int>(b)), " has no length as drawn"});
   }
 }
 

@@ -68,16 +68,26 @@ std::string describe(const Constraint& constraint) {
   return fmt::format("{} of {}", to_string(constraint.kind), constraint.name);
 }
 
-std::string to_string(const Deviation& deviation) {
+std::string wanted_and_found(const Deviation& deviation) {
+  constexpr int usual = 6, most = 17;  // digits
   const char* of = unit(deviation.kind);
-  return fmt::format("{} of {}, {} {}: {:.6g} {} wanted, {:.6g} {} found", to_string(deviation.kind),
-                     deviation.constraint, is_reaction(deviation.kind) ? "node" : "branch", deviation.member,
-                     deviation.wanted, of, deviation.found, of);
+  std::string wanted, found;
+  for (int digits = usual; digits <= most && wanted == found; ++digits) {
+    wanted = fmt::format("{:.{}g}", deviation.wanted, digits);
+    found = fmt::format("{:.{}g}", deviation.found, digits);
+  }
+  return fmt::format("{} {} wanted, {} {} found", wanted, of, found, of);
+}
+
+std::string to_string(const Deviation& deviation) {
+  return fmt::format("{} of {}, {} {}: {}", to_string(deviation.kind), deviation.constraint,
+                     is_reaction(deviation.kind) ? "node" : "branch", deviation.member + 1,
+                     wanted_and_found(deviation));
 }
 
 std::string to_string(const ShortPath& path, const std::string& from, const std::string& to) {
   return fmt::format(
-      "the lengths asked for between the fixed nodes {} and {} add up to {:.6g} m, but these are {:.6g} m "
+      "the lengths asked for between two fixed nodes, {} and {}, add up to {:.6g} m, but these are {:.6g} m "
       "apart",
       from, to, path.length, path.distance);
 }

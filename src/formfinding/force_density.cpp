@@ -8,6 +8,7 @@
 #include <formfinding/constraint_search.hpp>
 #include <formfinding/position_search.hpp>
 #include <tautline/core/error.hpp>
+#include <tautline/formfinding/node_error.hpp>
 #include <utility>
 
 namespace tautline::formfinding {
@@ -18,6 +19,7 @@ constexpr int largest_dense = 2000;  // rows of G^T G for which the condition nu
 constexpr int many_branches = 2000;  // from here on the positions are the unknowns where they can be
 constexpr double balance_limit =
     1e-9;  // of the largest force out of balance, relative to the largest tension
+constexpr int most_by_densities = 20000;    // branches; more take hours
 constexpr double position_balance = 1e-10;  // likewise, aimed at where the positions are the unknowns
 
 void check_targets(const Net& net, const VecX& target, const ForceDensityOptions& options) {
@@ -26,8 +28,8 @@ void check_targets(const Net& net, const VecX& target, const ForceDensityOptions
         fmt::format("the net has {} branches, but {} target tensions", net.branches.size(), target.size()));
   for (Eigen::Index b = 0; b < target.size(); ++b)
     if (!std::isnan(target[b]) && !(std::isfinite(target[b]) && target[b] > 0))
-      throw ModelError(
-          fmt::format("the target tension of branch {} must be positive, not {} N", b, target[b]));
+      throw NetError({"the target tension of ", branch_word(static_cast<int>(b)),
+                      fmt::format(" must be positive, not {} N", target[b])});
   if (!(options.initial_force_density > 0))
     throw ModelError(
         fmt::format("the initial force density must be positive, not {} N/m", options.initial_force_density));
@@ -180,7 +182,8 @@ ForceDensityResult find_tensions(const Net& net, const VecX& target, const Surfa
     result.method = chosen.method;
     // Where the positions are not determined or Newton's method strays, the published method has the last
     // word.
-    if (result.converged || options.method != TensionMethod::automatic) return result;
+    const bool too_large = static_cast<int>(net.branches.size()) > most_by_densities;
+    if (result.converged || options.method != TensionMethod::automatic || too_large) return result;
   }
   return search_force_densities(system, target, options, progress);
 }

@@ -18,6 +18,8 @@ constexpr int n_sweeps = 2;         // q <- T/L before Newton's method
 constexpr int max_inner = 60;       // products in one Newton step; each keeps a vector of 3 n_free numbers
 constexpr int refactor_after = 30;  // products in one step after which the factors are renewed
 constexpr int max_halvings = 8;
+constexpr int most_strays = 10;  // of Newton's steps, after each of which sweeps come nearer
+constexpr int sweeps_after_stray = 3;
 constexpr int anderson_depth = 8;
 
 VecX flat(const Coordinates& values) {
@@ -134,6 +136,7 @@ PositionResult find_positions(NetSystem& system, const VecX& tension, const VecX
   Coordinates force = search.out_of_balance(state);
   result.residual.push_back(largest_row(force));
   double forcing = 0.1;
+  int strays = 0;
   while (result.residual.back() > tolerance && result.iterations < max_iterations) {
     if (interrupt_requested()) throw Interrupted();
     const double before = force.norm();
@@ -141,7 +144,13 @@ PositionResult find_positions(NetSystem& system, const VecX& tension, const VecX
     const auto step = gmres([&](const VecX& y) { return search.product(state, y); }, flat(force),
                             std::max(forcing, needed), max_inner);
     result.inner_iterations += step.iterations;
-    if (!take_step(search, state, force, system.respond(state, shaped(step.x)), result.relaxation)) break;
+    if (!take_step(search, state, force, system.respond(state, shaped(step.x)), result.relaxation)) {
+      if (++strays > most_strays) break;
+      for (int k = 0; k < sweeps_after_stray; ++k) state = search.sweep(state);
+      result.factorisations += sweeps_after_stray;
+      force = search.out_of_balance(state);
+      result.relaxation.push_back(0);
+    }
     ++result.iterations;
     result.residual.push_back(largest_row(force));
     if (progress) progress(result.iterations, result.residual.back());

@@ -11,15 +11,28 @@
 #include <tautline/core/out_of_memory.hpp>
 
 #include "la/check.hpp"
+#include "la/room.hpp"
 
 namespace tautline::la {
+
+namespace {
+
+/// PETSc's allocator reports its line in place of PETSC_ERR_MEM; MUMPS's solve phase tells its INFOG(1).
+bool lacks_memory(PetscErrorCode code, std::string_view text) {
+  if (code == PETSC_ERR_MEM || code > PETSC_ERR_MAX_VALUE) return true;
+  for (const char* told : {"INFOG(1)=-13", "INFOG(1)=-7,", "INFOG(1)=-5,", "INFOG(1)=-19", "INFO(1)=-13"})
+    if (text.find(told) != std::string_view::npos) return true;
+  return false;
+}
+
+}  // namespace
 
 void check(PetscErrorCode code, const char* what) {
   if (code == 0) return;
   const char* text = nullptr;
   char* specific = nullptr;
-  if (code == PETSC_ERR_MEM) throw OutOfMemory(fmt::format("PETSc, {}", what));
   PetscErrorMessage(code, &text, &specific);
+  if (lacks_memory(code, specific != nullptr ? specific : "")) throw OutOfMemory(fmt::format("PETSc, {}", what));
   throw LibraryError(fmt::format("PETSc failed in {} with code {}: {} {}", what, static_cast<int>(code),
                                  text != nullptr ? text : "", specific != nullptr ? specific : ""));
 }
@@ -50,9 +63,11 @@ Session::Session() {
     for (const char* name : {"PETSC_OPTIONS", "PETSC_OPTIONS_YAML"}) unsetenv(name);
     n_arguments = 2;
   }
+  demand_room(60);
   PetscOptionsSetValue(nullptr, "-no_signal_handler", nullptr);
   check(SlepcInitialize(&n_arguments, &arguments, nullptr, nullptr), "SlepcInitialize");
   check(PetscPushErrorHandler(quiet, nullptr), "PetscPushErrorHandler");
+  hold_blas_buffer();
 }
 
 Session::~Session() {

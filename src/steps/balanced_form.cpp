@@ -17,7 +17,11 @@ VecX balancing(const Context& context, const FormNet& form, const formfinding::B
       wanted[b] = *group.force_density * (form.net.nodes[j] - form.net.nodes[i]).norm();
     }
   }
-  return formfinding::balancing_force_densities(form.net, wanted, held, form.surface, options);
+  try {
+    return formfinding::balancing_force_densities(form.net, wanted, held, form.surface, options);
+  } catch (const formfinding::NetError& error) {
+    throw named(context, form, error);
+  }
 }
 
 }  // namespace tautline::steps

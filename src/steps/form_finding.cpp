@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -101,6 +102,29 @@ Json support_forces(const model::Model& structure, const FormNet& net, const For
   return supports;
 }
 
+/// "principal stresses of 1.9 to 2.1 N/m"
+std::string range_met(const Form& found) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const Vec3& stress : found.film_stress) {
+    const Vec<2> principal = model::principal_values(stress);
+    least = std::min(least, principal[1]);
+    most = std::max(most, principal[0]);
+  }
+  return fmt::format("principal stresses of {:.4g} to {:.4g} N/m", least, most);
+}
+
+/// What evens a film out at a facet.
+std::string film_remedy(const formfinding::FilmFacet& facet) {
+  if (facet.stress[0] == facet.stress[1])
+    return "a finer or more even mesh there, or a cable or a ring at points that hold the film, evens it out";
+  return fmt::format(
+      "{:.4g} N/m along and {:.4g} N/m across one direction are in equilibrium on no doubly curved surface, "
+      "whatever the mesh: both families of lines would have to be geodesics. More equal prestress, or a "
+      "flatter "
+      "film, evens it out",
+      facet.stress[0], facet.stress[1]);
+}
+
 constexpr double noted_unevenness = 0.03, largest_unevenness = 0.3;
 
 /// Largest deviation of a film's stress from the stress asked for, over it; notes and judges it.
@@ -117,12 +141,10 @@ void judge_film(Context& context, const FormNet& net, const Form& found, Json& e
       std::count_if(uneven.begin(), uneven.end(), [](double u) { return u > noted_unevenness; });
   const std::string text = fmt::format(
       "the stress of the film deviates by up to {:.2g} % from the one asked for, by more than {:.0f} % in {} "
-      "of {} facets; largest in \"{}\" at ({:.4g}, {:.4g}, {:.4g}): a finer or more even mesh there, a cable "
-      "or "
-      "a ring at points that hold the film, or more equal prestress in both directions evens it out",
-      100 * *worst, 100 * noted_unevenness, many, uneven.size(),
+      "of {} facets, with {}; largest in \"{}\" at ({:.4g}, {:.4g}, {:.4g}): {}",
+      100 * *worst, 100 * noted_unevenness, many, uneven.size(), range_met(found),
       context.structure.groups[static_cast<std::size_t>(membrane.group)].name, middle.x(), middle.y(),
-      middle.z());
+      middle.z(), film_remedy(net.film[facet]));
   context.warn("film_unevenness", text);
   if (*worst <= largest_unevenness) return;
   entry["status"] = "not_converged";

@@ -87,6 +87,7 @@ class Rounds {
  private:
   /// The net between edges there, handed over. @return false, with a reason, if there is none
   bool find_net(const VecX& edge);
+  void start_next_from(const Form& found);
   /// The frame under the net. @return false, with a reason, if it finds no equilibrium
   bool rest();
   bool settled(double distance);
@@ -119,6 +120,7 @@ bool Rounds::find_net(const VecX& edge) {
         hand_over_(found);
         last_ = std::move(found);
         any_ = true;
+        start_next_from(last_);
         return true;
       }
       reason = found.reason;
@@ -133,6 +135,17 @@ bool Rounds::find_net(const VecX& edge) {
   context_.structure.nodes = before;
   why_ = fmt::format("between the places where the frame goes the net is not found: {}", reason);
   return false;
+}
+
+void Rounds::start_next_from(const Form& found) {
+  net_.start_density.resize(found.tension.size());
+  for (std::size_t b = 0; b < net_.net.branches.size(); ++b) {
+    const auto [i, j] = net_.net.branches[b];
+    const auto k = static_cast<Eigen::Index>(b);
+    net_.start_density[k] = found.tension[k] / (found.nodes[j] - found.nodes[i]).norm();
+  }
+  for (std::size_t i = 0; i < net_.nodes.size(); ++i)
+    if (!net_.net.fixed[i]) net_.net.nodes[i] = found.nodes[i];
 }
 
 bool Rounds::rest() {

@@ -11,7 +11,6 @@
 #include <tautline/formfinding/dynamic_relaxation.hpp>
 #include <tautline/formfinding/force_density.hpp>
 #include <tautline/formfinding/minimal_film.hpp>
-#include <tautline/formfinding/node_error.hpp>
 
 #include "steps/form_verdict.hpp"
 #include "steps/self_stress_form.hpp"
@@ -276,10 +275,19 @@ Form find_with_constraints(const Context& context, const FormFindingOptions& opt
   for (const auto& group : form.groups)
     if (keeps_force_density(context, options, group)) held.push_back(group);
   for (const int b : form.branches_of(structure, held)) problem.held[b] = true;
+  if (form.start_density.size() > 0)
+    for (std::size_t b = 0; b < problem.held.size(); ++b)
+      if (!problem.held[b])
+        problem.force_density[static_cast<Eigen::Index>(b)] =
+            form.start_density[static_cast<Eigen::Index>(b)];
   set_bounds(structure, options, form, problem);
   problem.pulls = bars(structure, form);
   problem.pulls.flip();
-  const auto found = formfinding::find_form(problem, constrained_options(options));
+  const auto found =
+      formfinding::find_form(problem, constrained_options(options), [&](int iteration, double residual) {
+        context.progress.update(
+            fmt::format("{} | iteration {}, residual {:.2e}", context.step_name, iteration, residual));
+      });
   Form result = begin(found);
   if (!found.misses.empty()) result.reason = reason_of_misses(context, form, found);
   result.compromise = !found.converged && found.in_balance && !found.misses.empty();
@@ -459,8 +467,8 @@ Form find_form(const Context& context, const FormFindingOptions& options, const 
     Form found = find_by_method(context, options, form);
     refuse_collapsed(context.structure, form, found);
     return found;
-  } catch (const formfinding::NodeError& error) {
-    throw ModelError("form-finding: " + error.with([&](int node) { return form.node_name(context, node); }));
+  } catch (const formfinding::NetError& error) {
+    throw named(context, form, error);
   }
 }
 

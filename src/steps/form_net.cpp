@@ -253,6 +253,12 @@ std::string FormNet::node_name(const Context& context, int node) const {
                : fmt::format("the node at {}", at);
 }
 
+ModelError named(const Context& context, const FormNet& form, const formfinding::NetError& error) {
+  return ModelError("form-finding: " +
+                    error.with([&](int node) { return form.node_name(context, node); },
+                               [&](int branch) { return form.describe(context.structure, branch); }));
+}
+
 FormNet extract_net(const Context& context, const FormFindingOptions& options) {
   FormNet form;
   form.groups = net_groups(context, options);

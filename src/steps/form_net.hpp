@@ -6,6 +6,7 @@
 #include <string>
 #include <tautline/formfinding/film_facet.hpp>
 #include <tautline/formfinding/net.hpp>
+#include <tautline/formfinding/node_error.hpp>
 #include <vector>
 
 #include "steps/context.hpp"
@@ -27,6 +28,7 @@ struct FormNet {
   VecX drawn_tension;      ///< of each branch, whatever becomes of the structure meanwhile [N]
   VecX drawn_length;       ///< of each branch [m]
   VecX unstressed_length;  ///< of each branch as drawn [m]
+  VecX start_density;      ///< of a net found before, near which the next is looked for [N/m]; may be empty
   VecX force_density;      ///< of each branch, in place of the drawn one [N/m]; empty: as drawn
 
   double stiffness(const model::Model& structure, std::size_t branch) const;
@@ -40,6 +42,9 @@ struct FormNet {
   /// "cable 3 of ridge, from (0, 0, 1) to (1, 0, 1)"
   std::string describe(const model::Model& structure, int branch) const;
 };
+
+/// The error by the deck's names.
+ModelError named(const Context& context, const FormNet& form, const formfinding::NetError& error);
 
 /// @throws ModelError where the options do not fit the structure
 FormNet extract_net(const Context& context, const FormFindingOptions& options);

@@ -54,16 +54,15 @@ std::string reason_of_misses(const Context& context, const FormNet& form,
   constexpr std::size_t most_named = 4;
   std::string text =
       found.least_squares_optimum
-          ? "the demands contradict each other; this is the net with the least weighted squares of what it "
-            "misses:"
+          ? "no net near the drawn one meets all demands; this is the net with the least weighted squares of "
+            "what it misses:"
           : fmt::format("after {} iterations the demands are still missed:", found.iterations);
   for (std::size_t i = 0; i < std::min(most_named, found.misses.size()); ++i) {
     const auto& miss = found.misses[i];
-    const char* unit = formfinding::unit(miss.kind);
-    text += fmt::format("{} {} of {}, {} of {} by {:.2g} % rms, most {}: {:.6g} {} wanted, {:.6g} {} found",
-                        i > 0 ? ";" : "", formfinding::to_string(miss.kind), miss.constraint, miss.missed,
-                        miss.members, 100 * miss.rms, place_of(context, form, miss.worst), miss.worst.wanted,
-                        unit, miss.worst.found, unit);
+    text += fmt::format("{} {} of {}, {} of {} by {:.2g} % rms, most {}: {}", i > 0 ? ";" : "",
+                        formfinding::to_string(miss.kind), miss.constraint, miss.missed, miss.members,
+                        100 * miss.rms, place_of(context, form, miss.worst),
+                        formfinding::wanted_and_found(miss.worst));
   }
   if (found.misses.size() > most_named)
     text += fmt::format("; and {} more", found.misses.size() - most_named);
@@ -110,7 +109,7 @@ void refuse_collapsed(const model::Model& structure, const FormNet& net, Form& f
   };
   std::map<std::string, std::pair<int, std::size_t>> collapsed;  // by group: how many, and one of them
   for (std::size_t b = 0; b < net.cables.size(); ++b)
-    if (length(found.nodes, b) < nothing * length(net.net.nodes, b)) {
+    if (length(found.nodes, b) < nothing * net.drawn_length[static_cast<Eigen::Index>(b)]) {
       auto& [count, one] = collapsed[structure.groups[structure.cables[net.cables[b]].group].name];
       ++count;
       one = b;
@@ -119,9 +118,10 @@ void refuse_collapsed(const model::Model& structure, const FormNet& net, Form& f
   std::string text;
   for (const auto& [group, of] : collapsed) {
     const auto members = net.branches_of(structure, {group}).size();
-    text += fmt::format("{}{} of the {} members of \"{}\" from {:.4g} m as drawn to {:.2g} m",
-                        text.empty() ? "" : "; ", of.first, members, group, length(net.net.nodes, of.second),
-                        length(found.nodes, of.second));
+    text +=
+        fmt::format("{}{} of the {} members of \"{}\" from {:.4g} m as drawn to {:.2g} m",
+                    text.empty() ? "" : "; ", of.first, members, group,
+                    net.drawn_length[static_cast<Eigen::Index>(of.second)], length(found.nodes, of.second));
   }
   found.converged = found.compromise = false;
   found.reason = fmt::format(

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <tautline/core/error.hpp>
 #include <tautline/core/interrupt.hpp>
 #include <tautline/core/out_of_memory.hpp>
 #include <tautline/la/session.hpp>
@@ -76,10 +77,11 @@ Json start_results(const deck::Deck& deck) {
   return results;
 }
 
-/// How a run stands that an exception ends: one that was stopped, by the user or for want of memory, is not
-/// one whose solvers found nothing.
+/// How a run stands that an exception ends: one that was stopped, by the user, a full disk or for want of
+/// memory, is not one whose solvers found nothing.
 const char* status_after(const std::exception& error) {
-  const bool stopped = dynamic_cast<const Interrupted*>(&error) != nullptr || is_out_of_memory(error);
+  const bool stopped = dynamic_cast<const Interrupted*>(&error) != nullptr ||
+                       dynamic_cast<const LibraryError*>(&error) != nullptr || is_out_of_memory(error);
   return stopped ? "interrupted" : "not_converged";
 }
 

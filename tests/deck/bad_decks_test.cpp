@@ -48,6 +48,10 @@ TEST(BadDecks, AFolderIsTold) {
   EXPECT_EQ(complaints(folder), folder + ": error: this is a folder, not a deck\n");
 }
 
+TEST(BadDecks, WithoutEndAreNotReadToTheEnd) {
+  EXPECT_EQ(complaints("/dev/zero"), "/dev/zero: error: this file has more than 100000000 bytes\n");
+}
+
 /// However a deck is damaged, the answer is a deck or a DeckError.
 TEST(BadDecks, DamagedTextNeverBreaksTheReader) {
   const std::string text = read_file(source_dir / "tests/decks/good/reflector_all_keys.yaml");

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <deck/files.hpp>
+#include <tautline/core/text.hpp>
 #include <tautline/deck/deck.hpp>
 
 namespace tautline::deck {
@@ -101,6 +102,22 @@ TEST(Overrides, AParametersOverrideIsNamedWhereItsValueDoesNotFit) {
       complaint("parameters.subdivisions=0").find("${subdivisions} is 0 (--set parameters.subdivisions=0)"),
       std::string::npos)
       << complaint("parameters.subdivisions=0");
+}
+
+TEST(Overrides, WithControlCharactersAreRefusedWithoutThem) {
+  for (const std::string bad : {"\x1b[31m", "\x07", "\xff", "\xc2\x9b"}) {
+    const std::string told = complaint("title=red" + bad);
+    EXPECT_NE(told.find("no text in UTF-8 or a control character"), std::string::npos) << told;
+    EXPECT_EQ(first_bad_byte(told), std::string::npos) << told;
+  }
+}
+
+TEST(Overrides, OfAnyLengthAreToldInFewWords) {
+  std::string text = "reflector.gap=";
+  text.resize(1'000'000, 'x');
+  const std::string told = complaint(text);
+  EXPECT_LT(told.size(), 10'000U);
+  EXPECT_NE(told.find("--set reflector.gap=xxx"), std::string::npos);
 }
 
 }  // namespace

@@ -80,7 +80,8 @@ TEST(ClothForm, RefusesClothWithoutArea) {
   auto problem = clothed_net(2);
   problem.triangles[0] = {0, 1, 1};
   const auto message = message_of<ModelError>([&] { find_form(problem); });
-  EXPECT_TRUE(mentions(message, "the facet of the film between node 1, 2, 2 has no area")) << message;
+  EXPECT_TRUE(mentions(message, "the facet of the film between node 1, node 2, node 2 has no area"))
+      << message;
 }
 
 }  // namespace

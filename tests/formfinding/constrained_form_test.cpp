@@ -32,7 +32,7 @@ TEST(LinearForm, CompressionMemberPushesTheNodeBeyondItsSupports) {
   ASSERT_EQ(form.warnings.size(), 1u);
   EXPECT_EQ(
       form.warnings[0],
-      "1 of 2 branches are compression members; the most negative force density is -1 N/m, in branch 1");
+      "1 of 2 branches are compression members; the most negative force density is -1 N/m, in branch 2");
 }
 
 TEST(LinearForm, IndefinitenessIsCountedInEveryDirection) {
@@ -192,7 +192,7 @@ TEST(ConstrainedForm, BoundsThatForbidTheTargetAreReported) {
   const ConstrainedResult result = find_form(problem);
   EXPECT_FALSE(result.converged);
   EXPECT_TRUE(result.least_squares_optimum);
-  EXPECT_NE(result.reason.find("tension of left, branch 0: 12 N wanted, 9 N found"), std::string::npos)
+  EXPECT_NE(result.reason.find("tension of left, branch 1: 12 N wanted, 9 N found"), std::string::npos)
       << result.reason;
 }
 
@@ -208,10 +208,9 @@ TEST(ConstrainedForm, LengthsShorterThanTheSupportsAreApartEndAtTheLeastSquares)
   EXPECT_NEAR(result.length[0], 0.64, 1e-6);
   ASSERT_EQ(result.worst.size(), 2u);
   EXPECT_EQ(result.worst[0].constraint, "long");
-  EXPECT_NE(
-      result.reason.find(
-          "the lengths asked for between the fixed nodes 0 and 2 add up to 1.8 m, but these are 2 m apart"),
-      std::string::npos)
+  EXPECT_NE(result.reason.find("the lengths asked for between two fixed nodes, node 1 and node 3, add up to "
+                               "1.8 m, but these are 2 m apart"),
+            std::string::npos)
       << result.reason;
 }
 
@@ -318,19 +317,32 @@ TEST(ConstrainedForm, InputThatMakesNoSenseIsNamed) {
   };
   EXPECT_EQ(with({{Kind::length, "ridge", {0}, {-3}}}), "length of ridge must be positive, not -3");
   EXPECT_EQ(with({{Kind::tension, "ridge", {}, {3}}}), "tension of ridge names no cable");
-  EXPECT_EQ(with({{Kind::tension, "ridge", {4}, {3}}}), "tension of ridge names branch 4, but the net has 2");
+  EXPECT_EQ(with({{Kind::tension, "ridge", {4}, {3}}}), "tension of ridge names branch 5, but the net has 2");
   EXPECT_EQ(with({{Kind::length, "ridge", {0, 1}, {3, 3, 3}}}),
             "length of ridge has 2 members, but 3 values");
   EXPECT_EQ(with({{Kind::unstressed_length, "ridge", {0}, {3}}}),
-            "unstressed length of ridge needs the axial stiffness of branch 0");
+            "unstressed length of ridge needs the axial stiffness of branch 1");
   EXPECT_EQ(with({{Kind::tension, "ridge", {0, 1}, {3}}, {Kind::tension, "valley", {1}, {4}}}),
-            "tension of ridge and tension of valley both set the tension of branch 1");
+            "tension of ridge and tension of valley both set the tension of branch 2");
   EXPECT_EQ(with({{Kind::reaction_x, "top", {0}, {1}}}),
-            "reaction x of top: node 0 is free in that direction, where nothing reacts");
+            "reaction x of top: node 1 is free in that direction, where nothing reacts");
   problem.net.branches.push_back({1, 2});
-  EXPECT_EQ(
-      with({{Kind::length, "strut", {2}, {3}}}),
-      "length of strut: branch 2 shall be 3 m long, but joins the fixed nodes 1 and 2, which are 4 m apart");
+  EXPECT_EQ(with({{Kind::length, "strut", {2}, {3}}}),
+            "length of strut: branch 3 shall be 3 m long, but joins two fixed nodes, node 2 and node 3, "
+            "which are 4 m "
+            "apart");
+}
+
+TEST(ConstrainedForm, WantedAndFoundAreToldApart) {
+  const auto told = [](double wanted, double found) {
+    Deviation deviation;
+    deviation.wanted = wanted;
+    deviation.found = found;
+    return wanted_and_found(deviation);
+  };
+  EXPECT_EQ(told(20, 19.25), "20 N wanted, 19.25 N found");
+  EXPECT_EQ(told(110000, 109999.91), "110000 N wanted, 109999.9 N found");
+  EXPECT_EQ(told(110000, 110000.0000004), "110000 N wanted, 110000.0000004 N found");
 }
 
 }  // namespace

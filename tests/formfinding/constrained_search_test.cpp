@@ -123,7 +123,7 @@ TEST(ConstrainedForm, OnASurfaceOnlyTheTiesReact) {
   };
   const auto nothing = [](const char* direction, int node) {
     return fmt::format("reaction {} of ties: node {} is free in that direction, where nothing reacts",
-                       direction, node);
+                       direction, node + 1);
   };
   problem.surface = &plane;
   EXPECT_EQ(fault(Kind::reaction_x, 1), nothing("x", 1));

@@ -196,7 +196,7 @@ TEST(ForceDensity, NodeWhoseDensitiesCancelIsNamed) {
 TEST(ForceDensity, InputThatMakesNoSenseIsRefused) {
   const Net net = star({{0, 0, 0}, {1, 0, 0}});
   EXPECT_EQ(error_of([&] { find_tensions(net, Eigen::Vector2d(10, -1), nullptr, {}); }),
-            "the target tension of branch 1 must be positive, not -1 N");
+            "the target tension of branch 2 must be positive, not -1 N");
   EXPECT_EQ(error_of([&] { find_tensions(net, Vec3(1, 1, 1), nullptr, {}); }),
             "the net has 2 branches, but 3 target tensions");
   EXPECT_EQ(error_of([&] { solve_linear(net, Vec3(1, 1, 1)); }),

@@ -102,7 +102,7 @@ TEST(MinimalFilm, TriangleWithoutAreaIsNamed) {
   film.cable_tension = VecX::Ones(film.net.branches.size());
   film.net.nodes.assign(film.net.nodes.size(), Vec3::Zero());
   EXPECT_EQ(error_of([&] { find_minimal_film(film); }),
-            "the facet of the film between node 1, 4, 5 has no area at the start");
+            "the facet of the film between node 1, node 4, node 5 has no area at the start");
 }
 
 TEST(UniformTension, FixedPointFindsTheGeodesicOfACable) {

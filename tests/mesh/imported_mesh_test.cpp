@@ -163,6 +163,14 @@ TEST(ImportedMesh, RunsNoScriptThatLiesBesideTheFile) {
   std::filesystem::remove(mark);
 }
 
+TEST(ImportedMesh, WithANodeThatIsNoNumberIsRefused) {
+  for (const std::string bad : {"nan", "inf", "-inf"}) {
+    const TemporaryFile file(
+        msh2(one_surface, "3\n1 0 0 0\n2 1 0 " + bad + "\n3 0 1 0\n", "1\n1 2 2 7 1 1 2 3\n"));
+    EXPECT_TRUE(mentions(message_of<ModelError>([&] { import_gmsh(file.path()); }), "no finite numbers"));
+  }
+}
+
 TEST(ImportedMesh, OfAFileThatGmshCannotParseIsALibraryError) {
   const TemporaryFile file("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\nthis is no number\n$EndNodes\n");
   const auto message = message_of<LibraryError>([&] { import_gmsh(file.path()); });

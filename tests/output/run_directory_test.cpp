@@ -52,6 +52,21 @@ TEST(RunDirectory, KnowsTheFilesOfARunThatWasKilled) {
   EXPECT_FALSE(fs::exists(directory.file("r/nodes.csv")));
 }
 
+TEST(RunDirectory, RemovesWhatAKilledRunHadHalfWrittenAlsoWhenItGoesOn) {
+  const TemporaryDirectory directory("run_directory_half");
+  for (const bool goes_on : {true, false}) {
+    run(directory.file("r"), {"results.json"});
+    fs::create_directories(directory.file("r/checkpoints"));
+    const char* half[] = {"r/results.json.4711.tmp", "r/checkpoints/point.bin.4711.tmp", "r/.tautline_probe_4711"};
+    const char* of_others[] = {"r/mine.4711.tmp", "r/results.json.tmp", "r/checkpoints/notes.4711.tmp"};
+    for (const char* name : half) put(directory.file(name), "x");
+    for (const char* name : of_others) put(directory.file(name), "x");
+    run(directory.file("r"), {}, goes_on);
+    for (const char* name : half) EXPECT_FALSE(fs::exists(directory.file(name))) << name;
+    for (const char* name : of_others) EXPECT_TRUE(fs::exists(directory.file(name))) << name;
+  }
+}
+
 TEST(RunDirectory, KeepsWhatARunGoesOnFrom) {
   const TemporaryDirectory directory("run_directory_goes_on");
   run(directory.file("r"), {"cables.csv"});

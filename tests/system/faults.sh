@@ -172,6 +172,10 @@ case $1 in
     for _ in $(seq 300); do [ -s "$out/results.json" ] && break; sleep 0.1; done
     run 5 "$SOURCE/inputs/frame.yaml"
     says "$WORK/err" 'another run \(process [0-9]+ on '
+    for command in "report $out" "study $SOURCE/inputs/dish_4m.yaml -o $out" "study $SOURCE/inputs/dish_4m.yaml --over subdivisions=2 -o $out"; do
+      expect 5 "$TAUTLINE" $command
+      says "$WORK/err" 'another run \(process [0-9]+ on '
+    done
     kill -9 %1
     wait || true
     run 0 "$SOURCE/inputs/frame.yaml"   # the lock of a process that is no more

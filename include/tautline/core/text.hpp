@@ -25,4 +25,7 @@ int characters(std::string_view text, std::size_t bytes);
 /// Byte offset of the first byte that is no text in UTF-8 (control characters included), or npos.
 std::size_t first_bad_byte(std::string_view text);
 
+/// The text with every byte that is no text in UTF-8 written as \\xNN, so that it does nothing to a terminal.
+std::string printable(std::string_view text);
+
 }  // namespace tautline

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 #include <tautline/formfinding/constrained_options.hpp>
@@ -76,6 +77,8 @@ const char* to_string(ConstraintKind kind);
 /// "N", "m" or "N/m"
 const char* unit(ConstraintKind kind);
 
+/// "20 N wanted, 19 N found", with as many digits as tell them apart.
+std::string wanted_and_found(const Deviation& deviation);
 /// "length of ridge, branch 12: 1.8 m wanted, 2 m found"
 std::string to_string(const Deviation& deviation);
 
@@ -130,6 +133,7 @@ struct ConstrainedResult {
 /// Cloth pulls along the sides of its triangles with natural force densities, which follow from the shape:
 /// the net is solved again with those of its last shape until they agree.
 /// @throws ModelError if the net or a constraint makes no sense
-ConstrainedResult find_form(const ConstrainedNet& problem, const ConstrainedOptions& options = {});
+ConstrainedResult find_form(const ConstrainedNet& problem, const ConstrainedOptions& options = {},
+                            const std::function<void(int, double)>& progress = {});
 
 }  // namespace tautline::formfinding

@@ -1,6 +1,6 @@
 #pragma once
 /// @file
-/// An error about nodes of a net, whose names the caller knows.
+/// Errors about nodes and branches of a net, whose names the caller knows.
 
 #include <string>
 #include <tautline/core/error.hpp>
@@ -9,33 +9,73 @@
 
 namespace tautline::formfinding {
 
-/// A sentence with nodes in it: by number, from 1, in what(); by name for who has names.
-class NodeError : public ModelError {
- public:
-  /// @param[in] before, after  the sentence around the nodes
-  NodeError(const std::string& before, std::vector<int> nodes, const std::string& after)
-      : ModelError(before + numbers(nodes) + after),
-        before_(before),
-        after_(after),
-        nodes_(std::move(nodes)) {}
+/// A part of a sentence: words, or a node or branch of the net.
+struct NetWord {
+  enum class Kind { words, node, branch };
+  Kind kind = Kind::words;
+  std::string words;
+  int index = 0;
 
-  /// The sentence with `name(node)` for each node.
-  template <class Name>
-  std::string with(const Name& name) const {
-    std::string names;
-    for (const int node : nodes_) names += (names.empty() ? "" : ", ") + name(node);
-    return before_ + names + after_;
+  NetWord(std::string text) : words(std::move(text)) {}  // NOLINT: words are words
+  NetWord(const char* text) : words(text) {}             // NOLINT
+  NetWord(Kind what, int number) : kind(what), index(number) {}
+};
+
+inline NetWord node_word(int node) {
+  return {NetWord::Kind::node, node};
+}
+inline NetWord branch_word(int branch) {
+  return {NetWord::Kind::branch, branch};
+}
+
+/// A sentence with nodes and branches in it: by number, from 1, in what(); by name for who has names.
+class NetError : public ModelError {
+ public:
+  explicit NetError(std::vector<NetWord> sentence)
+      : ModelError(text(
+            sentence, [](int node) { return "node " + std::to_string(node + 1); },
+            [](int branch) { return "branch " + std::to_string(branch + 1); })),
+        sentence_(std::move(sentence)) {}
+
+  /// The sentence with `node(i)` and `branch(b)` for each of them.
+  template <class NodeName, class BranchName>
+  std::string with(const NodeName& node, const BranchName& branch) const {
+    return text(sentence_, node, branch);
   }
 
  private:
-  static std::string numbers(const std::vector<int>& nodes) {
+  template <class NodeName, class BranchName>
+  static std::string text(const std::vector<NetWord>& sentence, const NodeName& node,
+                          const BranchName& branch) {
     std::string text;
-    for (const int node : nodes) text += (text.empty() ? "node " : ", ") + std::to_string(node + 1);
+    for (const NetWord& word : sentence)
+      text += word.kind == NetWord::Kind::words  ? word.words
+              : word.kind == NetWord::Kind::node ? node(word.index)
+                                                 : branch(word.index);
     return text;
   }
 
-  std::string before_, after_;
-  std::vector<int> nodes_;
+  std::vector<NetWord> sentence_;
+};
+
+/// A sentence about nodes alone.
+class NodeError : public NetError {
+ public:
+  /// @param[in] before, after  the sentence around the nodes
+  NodeError(const std::string& before, const std::vector<int>& nodes, const std::string& after)
+      : NetError(list(before, nodes, after)) {}
+
+ private:
+  static std::vector<NetWord> list(const std::string& before, const std::vector<int>& nodes,
+                                   const std::string& after) {
+    std::vector<NetWord> sentence{before};
+    for (const int node : nodes) {
+      if (sentence.size() > 1) sentence.emplace_back(", ");
+      sentence.push_back(node_word(node));
+    }
+    sentence.emplace_back(after);
+    return sentence;
+  }
 };
 
 /// Force densities that cancel out around a node, so that equilibrium leaves its place open.

@@ -67,7 +67,12 @@ void require_supported(const std::string& group, int type) {
 }
 
 void add_cells(const Nodes& nodes, int type, const std::vector<std::size_t>& tags, CellGroup& group) {
-  const auto at = [&](std::size_t i) { return nodes.index_of_tag.at(tags[i]); };
+  const auto at = [&](std::size_t i) {
+    const auto found = nodes.index_of_tag.find(tags[i]);
+    if (found == nodes.index_of_tag.end())
+      throw Unsuitable(fmt::format("has a cell with node {}, which it does not have", tags[i]));
+    return found->second;
+  };
   if (type == point)
     for (std::size_t i = 0; i < tags.size(); ++i) group.points.push_back(at(i));
   else if (type == line)
