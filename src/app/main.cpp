@@ -185,7 +185,8 @@ int told(int result) {
 /// into it. Instead nothing comes from it, or goes to it; to the standard output in vain, which is told.
 void hold_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY) != stream)
+    if (fcntl(stream, F_GETFD) < 0 &&
+        open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY) != stream)
       std::_Exit(static_cast<int>(ExitCode::library_failed));
 }
 

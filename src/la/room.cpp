@@ -18,8 +18,8 @@ void demand_room(int megabytes) {
 
 void hold_blas_buffer() {
   demand_room(150);
-  using Trsm = void (*)(const char*, const char*, const char*, const char*, const int*, const int*, const double*,
-                        const double*, const int*, double*, const int*);
+  using Trsm = void (*)(const char*, const char*, const char*, const char*, const int*, const int*,
+                        const double*, const double*, const int*, double*, const int*);
   const auto trsm = reinterpret_cast<Trsm>(dlsym(RTLD_DEFAULT, "dtrsm_"));
   if (trsm == nullptr) return;
   const int one = 1;

@@ -32,7 +32,8 @@ void check(PetscErrorCode code, const char* what) {
   const char* text = nullptr;
   char* specific = nullptr;
   PetscErrorMessage(code, &text, &specific);
-  if (lacks_memory(code, specific != nullptr ? specific : "")) throw OutOfMemory(fmt::format("PETSc, {}", what));
+  if (lacks_memory(code, specific != nullptr ? specific : ""))
+    throw OutOfMemory(fmt::format("PETSc, {}", what));
   throw LibraryError(fmt::format("PETSc failed in {} with code {}: {} {}", what, static_cast<int>(code),
                                  text != nullptr ? text : "", specific != nullptr ? specific : ""));
 }

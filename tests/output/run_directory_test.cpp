@@ -57,7 +57,8 @@ TEST(RunDirectory, RemovesWhatAKilledRunHadHalfWrittenAlsoWhenItGoesOn) {
   for (const bool goes_on : {true, false}) {
     run(directory.file("r"), {"results.json"});
     fs::create_directories(directory.file("r/checkpoints"));
-    const char* half[] = {"r/results.json.4711.tmp", "r/checkpoints/point.bin.4711.tmp", "r/.tautline_probe_4711"};
+    const char* half[] = {"r/results.json.4711.tmp", "r/checkpoints/point.bin.4711.tmp",
+                          "r/.tautline_probe_4711"};
     const char* of_others[] = {"r/mine.4711.tmp", "r/results.json.tmp", "r/checkpoints/notes.4711.tmp"};
     for (const char* name : half) put(directory.file(name), "x");
     for (const char* name : of_others) put(directory.file(name), "x");
