@@ -22,7 +22,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::set<std::string> left_out{"wall_seconds", "timings", "peak_memory_bytes", "ranks"};
+const std::set<std::string> left_out{"wall_seconds", "checkpoint_seconds", "timings", "peak_memory_bytes",
+                                     "ranks"};
 
 /// How far two numbers of one kind may lie apart: beside the larger one, or at all.
 struct Tolerance {

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string quoted(const std::string& text) {
-  return "'" + text + "'";
+  return fmt::format("'{}'", text);
 }
 
 std::string command_line(const Run& run, const Case& c, const Program& program,
@@ -27,9 +27,9 @@ std::string command_line(const Run& run, const Case& c, const Program& program,
                     : "";
   command += fmt::format("{} {} {} -o {} --quiet", quoted(program.path), run.study.empty() ? "run" : "study",
                          quoted(deck), quoted(directory));
-  for (const auto& argument : run.study) command += " " + quoted(argument);
+  for (const auto& argument : run.study) command += fmt::format(" {}", quoted(argument));
   command += run.pictures ? " --set output.picture_width=800" : " --no-pictures";
-  for (const auto& o : run.overrides) command += " --set " + quoted(o);
+  for (const auto& o : run.overrides) command += fmt::format(" --set {}", quoted(o));
   return command;
 }
 
