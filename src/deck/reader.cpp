@@ -56,6 +56,7 @@ void Reader::complain(const Node& node, std::string message, std::string expecta
 
 void Reader::complain(const Place& place, std::string message, std::string context, std::string expectation,
                       std::string suggestion) {
+  if (complaints_.is_full()) return complaints_.count_one();
   Diagnostic diagnostic = source_.diagnostic(place, std::move(message));
   diagnostic.context = std::move(context);
   diagnostic.expectation = std::move(expectation);

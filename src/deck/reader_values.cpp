@@ -86,9 +86,10 @@ std::optional<std::vector<std::string>> Reader::names(const Keyword& keyword, co
   }
   if (!expect(Node::Kind::sequence, keyword, node)) return {};
   std::vector<std::string> result;
+  std::set<std::string_view> seen;
   for (const auto& item : node.items) {
     if (!expect(Node::Kind::scalar, keyword, item)) continue;
-    if (std::find(result.begin(), result.end(), item.text) != result.end())
+    if (!seen.insert(item.text).second)
       complain(item, fmt::format("\"{}\" stands twice in \"{}\"", item.text, keyword.name));
     refer(keyword.refers_to, item);
     result.push_back(item.text);

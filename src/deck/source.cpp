@@ -36,8 +36,17 @@ Place Source::place(int line_from_0, int byte_column, std::size_t bytes) const {
   const std::string& text = line(line_from_0 + 1);
   const auto begin = std::min(static_cast<std::size_t>(std::max(0, byte_column)), text.size());
   const auto end = std::min(begin + bytes, text.size());
-  const int before = characters(text, begin);
-  return {line_from_0 + 1, before + 1, std::max(1, characters(text, end) - before), {}};
+  const int before = characters_before(line_from_0 + 1, begin);
+  const int length = characters(std::string_view(text).substr(begin, end - begin), end - begin);
+  return {line_from_0 + 1, before + 1, std::max(1, length), {}};
+}
+
+int Source::characters_before(int number, std::size_t bytes) const {
+  if (counted_.line != number || counted_.bytes > bytes) counted_ = {number, 0, 0};
+  const std::string_view rest = std::string_view(line(number)).substr(counted_.bytes);
+  counted_.characters += characters(rest, bytes - counted_.bytes);
+  counted_.bytes = bytes;
+  return counted_.characters;
 }
 
 SourceLocation Source::where(const Place& place) const {
@@ -58,8 +67,12 @@ Diagnostic Source::diagnostic(const Place& place, std::string message) const {
   return result;
 }
 
+bool Complaints::is_full() const noexcept {
+  return bytes_ > most_kept;
+}
+
 void Complaints::add(Diagnostic diagnostic) {
-  if (bytes_ > most_kept) {
+  if (is_full()) {
     ++n_more_;
     return;
   }

@@ -26,14 +26,27 @@ class Source {
   Diagnostic diagnostic(const Place& place, std::string message) const;
 
  private:
+  /// Characters in the first `bytes` of a line. Places come in the order of the text: the count goes on where
+  /// it was.
+  int characters_before(int number, std::size_t bytes) const;
+
   std::string name_;
   std::vector<std::string> lines_;
+  struct Counted {
+    int line = 0;
+    std::size_t bytes = 0;
+    int characters = 0;
+  };
+  mutable Counted counted_;
 };
 
 /// Everything wrong with the deck so far.
 class Complaints {
  public:
   void add(Diagnostic diagnostic);
+  /// Whether further complaints are only counted; their text need not be made.
+  bool is_full() const noexcept;
+  void count_one() noexcept { ++n_more_; }
   bool empty() const noexcept { return list_.empty(); }
   /// @throws DeckError, sorted by place, at most 20 and then their number, if there is any
   void throw_if_any();

@@ -151,7 +151,9 @@ class TreeBuilder : public YAML::EventHandler {
     if (anchor != 0) anchors_[anchor] = node;
   }
   void add(Node node) {
-    if (++n_nodes_ > most_nodes) reject(node.place, "the deck is too large");
+    if (++n_nodes_ > most_nodes)
+      reject(node.place, fmt::format("the deck is too large: it holds more than {} values", most_nodes),
+             "describe large structures by a mesh file");
     node.label = node.place;
     if (open_.empty()) {
       root_ = std::move(node);

@@ -11,6 +11,7 @@
 #include "mesh/child.hpp"
 #include "mesh/gmsh/plugin.hpp"
 #include "mesh/mesh_bytes.hpp"
+#include "mesh/msh_counts.hpp"
 
 namespace tautline::mesh {
 
@@ -29,6 +30,8 @@ void require_mesh_file(const std::string& path) {
         "{} is not a gmsh mesh: a mesh file begins with \"{}\" (versions 2.2 and 4.1, text or binary). A "
         "script (.geo) is meshed by gmsh first: gmsh -2 drawing.geo -o mesh.msh",
         path, opening));
+  if (const std::string fault = fault_of_counts(path); !fault.empty())
+    throw ModelError(fmt::format("the mesh {} is damaged: it {}", path, fault));
 }
 
 /// Far above what gmsh needs for a mesh of that size.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <deck/files.hpp>
 #include <tautline/deck/deck.hpp>
 
@@ -123,6 +124,24 @@ TEST(HugeDecks, OfManyUnknownNamesShowTheFirst) {
   EXPECT_NE(text.find("5000 errors in all; the first 20 are shown"), std::string::npos)
       << text.substr(0, 400);
   EXPECT_LT(text.size(), 20'000U);
+}
+
+/// Columns count characters however the places come; a line of a megabyte takes no quadratic time.
+TEST(HugeDecks, OfOneLongLineArePlacedQuickly) {
+  std::string names;
+  for (int i = 0; i < 50'000; ++i) names += "\"ü" + std::to_string(i) + "\", ";
+  const auto start = std::chrono::steady_clock::now();
+  const std::string text = told(two_nodes("1", names + "a, a", "[a, b]"));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+  EXPECT_NE(text.find("errors in all"), std::string::npos) << text.substr(0, 400);
+  EXPECT_NE(text.find("unknown group \"ü0\""), std::string::npos) << text.substr(0, 400);
+  EXPECT_NE(text.find("deck.yaml:8:24: error: unknown group \"ü1\""), std::string::npos)
+      << text.substr(0, 900);
+}
+
+TEST(HugeDecks, AreToldOfTheirNumberOfValues) {
+  EXPECT_NE(told("title: [" + repeated("a, ", 1'000'001) + "a]").find("more than 1000000 values"),
+            std::string::npos);
 }
 
 TEST(HugeDecks, ShowWhatStandsAboutAFaultOfALongLine) {

@@ -163,6 +163,35 @@ TEST(ImportedMesh, RunsNoScriptThatLiesBesideTheFile) {
   std::filesystem::remove(mark);
 }
 
+/// A text with the first occurrence of a part replaced, which must be there.
+std::string with(std::string text, const std::string& part, const std::string& other) {
+  const auto at = text.find(part);
+  EXPECT_NE(at, std::string::npos) << part;
+  return at == std::string::npos ? text : text.replace(at, part.size(), other);
+}
+
+/// gmsh would read as many as the file says and leave out the others.
+TEST(ImportedMesh, ThatSaysLessThanItHoldsIsRefused) {
+  const std::string two =
+      msh2(one_surface, "4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 1 0\n", "2\n1 2 2 7 1 1 2 3\n2 2 2 7 1 2 4 3\n");
+  const std::string four =
+      with(with(msh2(one_surface, "1 4 1 4\n2 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n",
+                     "1 2 1 2\n2 1 2 2\n1 1 2 3\n2 2 4 3\n"),
+                "2.2", "4.1"),
+           "$Nodes", "$Entities\n0 0 1 0\n1 0 0 0 1 1 0 1 7 0\n$EndEntities\n$Nodes");
+  EXPECT_EQ(import_gmsh(TemporaryFile(two).path()).groups.at("cloth").triangles.size(), 2u);
+  EXPECT_EQ(import_gmsh(TemporaryFile(four).path()).groups.at("cloth").triangles.size(), 2u);
+  for (const std::string& damaged :
+       {with(two, "$Elements\n2", "$Elements\n1"), with(two, "$Nodes\n4", "$Nodes\n3"),
+        with(four, "1 2 1 2\n2 1 2 2", "1 1 1 2\n2 1 2 1"),
+        with(four, "1 2 1 2\n2 1 2 2", "1 1 1 2\n2 1 2 2"), with(four, "1 4 1 4", "1 3 1 4"),
+        with(four, "1 4 1 4", "2 4 1 4")}) {
+    const TemporaryFile file(damaged);
+    EXPECT_TRUE(mentions(message_of<ModelError>([&] { import_gmsh(file.path()); }), "is damaged: it "))
+        << damaged;
+  }
+}
+
 TEST(ImportedMesh, WithANodeThatIsNoNumberIsRefused) {
   for (const std::string bad : {"nan", "inf", "-inf"}) {
     const TemporaryFile file(

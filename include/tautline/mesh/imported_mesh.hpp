@@ -24,7 +24,8 @@ struct ImportedMesh {
   std::map<std::string, CellGroup> groups;  ///< by physical name
 };
 
-/// @brief Reads a gmsh .msh file (any version gmsh reads). gmsh is loaded on first use from a plugin.
+/// @brief Reads a gmsh .msh file (any version gmsh reads). gmsh is loaded on first use from a plugin
+/// and reads in a child process, which a damaged file may end.
 /// @throws LibraryError if gmsh cannot be loaded or read the file; ModelError if the file has no named
 /// physical group, or cells of a kind or order the program has no element for (names them)
 ImportedMesh import_gmsh(const std::string& path);

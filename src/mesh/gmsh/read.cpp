@@ -169,7 +169,13 @@ class NamelessFile {
 ImportedMesh read(const std::string& path) {
   const NamelessFile file(path);
   const Session session;
-  gmsh::open(file.name());
+  try {
+    gmsh::open(file.name());
+  } catch (const std::string& message) {  // may hold a name that nobody knows
+    if (message.find(file.name()) != std::string::npos)
+      throw std::runtime_error("something in it is no number, or it ends too early");
+    throw;
+  }
   const Nodes nodes = read_nodes();
   return compact(nodes.positions, read_groups(nodes));
 }
