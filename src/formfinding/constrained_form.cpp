@@ -247,6 +247,9 @@ class FormSearch {
   bool compromise(const NetState* end);
   CompromiseSettings compromise_settings() const;
   std::optional<CompromiseResult> best_compromise(const NetState* end) const;
+  /// How far a node has moved from where it was drawn, over the mean length of the members there.
+  double strayed(const CompromiseResult& found) const;
+  bool is_better(const CompromiseResult& a, const CompromiseResult& b) const;
   bool pushes(const ConstrainedResult& found) const;
 
   const ConstrainedNet& problem_;
@@ -423,25 +426,39 @@ CompromiseSettings FormSearch::compromise_settings() const {
   return settings;
 }
 
+double FormSearch::strayed(const CompromiseResult& found) const {
+  const Coordinates drawn = given_nodes(problem_.net);
+  const double farthest = (found.state.nodes - drawn).rowwise().norm().maxCoeff();
+  return farthest / system_.state(given_density(problem_, start_), drawn).length.mean();
+}
+
+/// Fewer squares are better. But beside a net that all but meets the demands, one that is twice as far from
+/// the drawing, nodes moved by more than a member's length, is folded: another net than was asked for.
+bool FormSearch::is_better(const CompromiseResult& a, const CompromiseResult& b) const {
+  constexpr double nearly = 1e-2;
+  const auto folded_beside = [&](const CompromiseResult& one, const CompromiseResult& other) {
+    const double far = strayed(one);
+    return far > 1 && far > 2 * strayed(other) && other.rows.missing().lpNorm<Eigen::Infinity>() < nearly;
+  };
+  if (folded_beside(a, b)) return false;
+  if (folded_beside(b, a)) return true;
+  return !b.met && (a.met || a.squares < (1 - 1e-9) * b.squares);
+}
+
 std::optional<CompromiseResult> FormSearch::best_compromise(const NetState* end) const {
   const CompromiseSettings settings = compromise_settings();
   std::optional<CompromiseResult> best;
   const auto search_from = [&](const NetState& start) {
-    CompromiseResult found = find_compromise(
-        system_, [&](const NetState& state) { return rows(state); }, start, settings);
-    const bool better = !best || found.met || found.squares < (1 - 1e-9) * best->squares;
-    if (found.in_balance && better) best = std::move(found);
-  };
-  const auto attempt = [&](const auto& make_start) {
     try {
-      search_from(make_start());
+      CompromiseResult found = find_compromise(
+          system_, [&](const NetState& state) { return rows(state); }, start, settings);
+      if (found.in_balance && (!best || is_better(found, *best))) best = std::move(found);
     } catch (const ModelError&) {
       // This start leads off the surface.
     }
   };
-  if (end != nullptr) attempt([&]() -> const NetState& { return *end; });
-  const NetState given = system_.state(given_density(problem_, start_), given_nodes(problem_.net));
-  attempt([&] { return given; });
+  if (end != nullptr) search_from(*end);
+  search_from(system_.state(given_density(problem_, start_), given_nodes(problem_.net)));
   return best;
 }
 
