@@ -59,6 +59,7 @@ class InputCheck {
   std::vector<Doubt> run() {
     for (const auto& [name, material] : stock_.materials) check_material(name, material);
     check_initial_strains();
+    check_turns();
     if (!in_metres(model_, stock_)) return std::move(doubts_);
     for (const auto& [name, section] : stock_.sections) check_section(name, section);
     check_size();
@@ -168,6 +169,19 @@ class InputCheck {
           fmt::format("the structure is {:.4g} km across: are its coordinates in millimetres? Metres are "
                       "expected",
                       1e-3 * size));
+  }
+
+  /// More than half a turn of one end of an element against the other looks like less.
+  void check_turns() {
+    const double most = std::numbers::pi * static_cast<double>(model_.beams.size());
+    for (const auto& load : model_.loads)
+      if (const double size = load.rotation ? load.rotation->norm() : 0; most > 0 && size > most)
+        add("large_turn", fmt::format("load \"{}\"", load.name),
+            fmt::format(
+                "turns a support by {:.4g} rad, more than half a turn for each of the {} beam elements: if "
+                "the rest is held, divide the beams (group_subdivisions of a mesh step), else more "
+                "than half a turn in one looks like less",
+                size, model_.beams.size()));
   }
 
   void check_accelerations() {

@@ -52,6 +52,24 @@ std::vector<double> facet_strains(const Model& model, const Response& response) 
   return strains;
 }
 
+/// Of each beam, how far one end is turned against the other [rad].
+std::vector<double> turns_within(const Model& model, const Response& response) {
+  std::vector<double> turns;
+  for (std::size_t i = 0; i < model.beams.size(); ++i) {
+    const auto& beam = model.beams[i];
+    const auto section = beam_section(model, beam);
+    const auto& forces = response.beams[i];
+    const double length = (model.nodes[beam.nodes[1]] - model.nodes[beam.nodes[0]]).norm();
+    const auto bent = [&](int axis, double stiffness) {
+      return (forces.end_moment(axis, 1) - forces.end_moment(axis, 0)) / (2 * stiffness);
+    };
+    turns.push_back(length * Vec3(forces.torque / section.torsion_stiffness,
+                                  bent(1, section.bending_stiffness_2), bent(2, section.bending_stiffness_3))
+                                 .norm());
+  }
+  return turns;
+}
+
 }  // namespace
 
 LineStrains line_strains(const Model& model, const Response& response) {
@@ -89,15 +107,17 @@ std::vector<double> euler_ratios(const Model& model, const Response& response) {
 
 std::vector<Doubt> state_doubts(const Model& model, const Response& response) {
   std::vector<Doubt> doubts;
-  std::vector<Beyond> strained(model.groups.size()), pressed(model.groups.size());
+  std::vector<Beyond> strained(model.groups.size()), pressed(model.groups.size()),
+      turned(model.groups.size());
   const auto lines = line_strains(model, response);
-  const auto ratios = euler_ratios(model, response);
+  const auto ratios = euler_ratios(model, response), turns = turns_within(model, response);
   const auto facets = facet_strains(model, response);
   for (std::size_t i = 0; i < model.cables.size(); ++i)
     strained[model.cables[i].group].add(i, lines.cables[i], largest_strain);
   for (std::size_t i = 0; i < model.beams.size(); ++i) {
     strained[model.beams[i].group].add(i, lines.beams[i], largest_strain);
     pressed[model.beams[i].group].add(i, ratios[i], 1);
+    turned[model.beams[i].group].add(i, turns[i], largest_turn);
   }
   for (std::size_t i = 0; i < model.membranes.size(); ++i)
     strained[model.membranes[i].group].add(i, facets[i], largest_strain);
@@ -126,6 +146,15 @@ std::vector<Doubt> state_doubts(const Model& model, const Response& response) {
                        "ends{}, and cannot bow out within one element: divide the group "
                        "(group_subdivisions of a mesh step), or take a stiffer section",
                        name(g, pressed[g].worst), pressed[g].value, and_others(pressed[g].count)),
+           where});
+    if (turned[g].count > 0)
+      doubts.push_back(
+          {"large_turn",
+           fmt::format(
+               "{} turns by {:.3g} rad from end to end{}: one element follows some tenths of a radian, "
+               "and more than half a turn looks to it like less. Divide the group "
+               "(group_subdivisions of a mesh step)",
+               name(g, turned[g].worst), turned[g].value, and_others(turned[g].count)),
            where});
   }
   return doubts;

@@ -312,6 +312,31 @@ TEST(StateDoubts, TellOfAMemberBeyondItsEulerLoad) {
   EXPECT_EQ(codes(state_doubts(model, response)), Codes());
 }
 
+// Torsion stiffness of the test beam over 10 m: a torque of G J / 10 m turns the ends by 1 rad.
+TEST(StateDoubts, TellOfABeamThatTurnsFarWithinOneElement) {
+  const auto model = stayed_mast();
+  auto response = at_rest(model);
+  const double one = model.groups[0].beam.torsion_stiffness / 10;
+  response.beams[0].torque = -0.99 * one;
+  EXPECT_EQ(codes(state_doubts(model, response)), Codes());
+  response.beams[0].torque = -2 * one;
+  const auto doubts = state_doubts(model, response);
+  ASSERT_EQ(codes(doubts), Codes{"large_turn"});
+  EXPECT_TRUE(mentions(doubts[0].message, "turns by 2 rad from end to end"));
+}
+
+TEST(InputDoubts, TellOfATurnThatTheElementsCannotFollow) {
+  auto model = stayed_mast();
+  Load turn;
+  turn.name = "wind up";
+  turn.nodes = {1};
+  turn.rotation = Vec3(0, 0, 3);
+  model.loads = {turn};
+  EXPECT_EQ(codes(input_doubts(model, steel())), Codes());
+  model.loads[0].rotation = Vec3(0, 0, 10);
+  EXPECT_EQ(codes(input_doubts(model, steel())), Codes{"large_turn"});
+}
+
 TEST(StateDoubts, TellOfStrains) {
   const auto model = stayed_mast();
   auto response = at_rest(model);

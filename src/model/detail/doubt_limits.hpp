@@ -16,6 +16,7 @@ constexpr double largest_modulus = 1e16;    ///< [Pa]; what is meant to be rigid
 constexpr double largest_density = 1e5;     ///< [kg/m^3]
 constexpr double largest_expansion = 0.01;  ///< [1/K]
 constexpr double largest_strain = 1;        ///< of members, initial or in equilibrium
+constexpr double largest_turn = 1;          ///< of one end of a beam element against the other [rad]
 constexpr double largest_cable = 3;         ///< diameter [m]; main cables of bridges have 1.1
 constexpr double largest_beam = 100;        ///< [m]; cooling towers
 constexpr double largest_wall = 30;         ///< thickness of shells [m]
