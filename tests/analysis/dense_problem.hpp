@@ -92,9 +92,9 @@ class DrivenProblem : public DenseProblem {
   static constexpr double way = 2;
   explicit DrivenProblem(double pull)
       : DenseProblem(
-            [pull](const VecX& x, double lambda) {
+            [pull](const VecX& x, double part) {
               VecX f(n);
-              for (int i = 0; i < 5; ++i) f[i] = x[i] + x[i] * x[i] * x[i] - pull * lambda - way * lambda;
+              for (int i = 0; i < 5; ++i) f[i] = x[i] + x[i] * x[i] * x[i] - (pull + way) * part;
               f[5] = 0;
               return f;
             },

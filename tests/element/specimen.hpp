@@ -38,8 +38,8 @@ struct Specimen {
   /// Evaluates with given nodes; `order` renumbers them (the physical element stays the same).
   std::function<Answer(const Motion&, const std::vector<int>& order, Want)> evaluate;
   Vec3 field_force = Vec3::Zero();  ///< of an outside field, such as weight, on the whole element [N]
-  std::function<Specimen(const Mat3&)>
-      in_turned_field;            ///< the same where that field is turned; or none acts
+  std::function<Specimen(const Mat3&)> in_turned_field =
+      nullptr;                    ///< the same where that field is turned; or none
   bool may_reverse_nodes = true;  ///< no node is first by nature
 
   int n_nodes() const { return static_cast<int>(x_ref.cols()); }

@@ -189,7 +189,7 @@ TEST_P(EveryStage, EndsAlikeWhicheverSolverGotThere) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Stages, EveryStage, ::testing::ValuesIn(stages()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& test) { return test.param.name; });
 
 }  // namespace
 }  // namespace tautline::steps

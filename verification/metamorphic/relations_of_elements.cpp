@@ -236,9 +236,9 @@ std::optional<Trial> bar_for_cable(const Json& deck, Random& random) {
   trial.judge = [](const Outcomes& o) {
     if (o[0].done() != o[1].done()) {
       const auto& done = o[0].done() ? o[0] : o[1];
-      const auto& other = o[0].done() ? o[1] : o[0];
+      const auto& failed = o[0].done() ? o[1] : o[0];
       if (!taut_all_along(done)) return std::vector<Difference>{};
-      return std::vector<Difference>{{"taut all along, but one ends otherwise: " + other.message, 10}};
+      return std::vector<Difference>{{"taut all along, but one ends otherwise: " + failed.message, 10}};
     }
     if (!o[0].done()) return std::vector<Difference>{};
     if (!taut_all_along(o[0]) || !taut_all_along(o[1])) return std::vector<Difference>{};
